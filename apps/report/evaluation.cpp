@@ -106,6 +106,7 @@ std::string to_table(const Evaluation& e) {
   table += position_row("ATE position", e.ate_m);
   table += row("ATE rotation", e.rotation_deg, "deg");
   table += row("ATE yaw", e.yaw_deg, "deg");
+  table += row("tilt, not aligned", e.tilt_deg, "deg");
   for (const RelativeError& relative : e.relative) {
     if (relative.translation_m.count == 0) continue;
     table += position_row(fmt::format("RPE position, {} s", relative.delta_s), relative.translation_m);

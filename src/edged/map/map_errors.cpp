@@ -2,9 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/map/map_errors.hpp"
 
+#include <algorithm>
+
 #include "edged/core/angles.hpp"
 
 namespace edged {
+namespace {
+
+// Of the odometry: also with the accelerometer's errors of cheap IMUs, 0.05 deg with good ones.
+constexpr double kTilt_rad = 0.3 * kDegree;
+constexpr double kTiltTime_s = 10.0;  // after which its error is another one
+
+}  // namespace
 
 std::optional<LinearizedObservation> linearised(const MapObservation& observation, const SE3& T_M_B, const SE3& T_M_K,
                                                 const SE3& T_B_C) {
@@ -40,6 +49,17 @@ Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, doubl
   Q.diagonal().head<3>().setConstant(config.drift_m * config.drift_m * dt);
   Q.bottomRightCorner<3, 3>() = dt * (yaw * yaw * along_up + tilt * tilt * (Eigen::Matrix3d::Identity() - along_up));
   return Q;
+}
+
+GravityObservation observed_gravity(const SE3& T_O_B, double dt) {
+  return {T_O_B.R().row(2), std::min(dt / kTiltTime_s, 1.0) / (kTilt_rad * kTilt_rad)};
+}
+
+/// r = up_M - up_B, both in B; J = skew(up_M).
+LinearizedGravity linearised(const GravityObservation& observation, const SE3& T_M_B) {
+  const Eigen::Vector3d up_M = T_M_B.R().row(2);
+  return {observation.information * (Eigen::Matrix3d::Identity() - up_M * up_M.transpose()),
+          observation.information * up_M.cross(observation.up_B)};
 }
 
 SE3 corrected(const SE3& T, const Vector6d& error) {

@@ -55,6 +55,21 @@ Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B);
 /// Covariance of the odometry's drift after dt [s].
 Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt);
 
+/// Up in the body frame by the odometry, a unit vector, and the information on its direction [1/rad^2].
+struct GravityObservation {
+  Eigen::Vector3d up_B;
+  double information;
+};
+/// dt: the time that it stands for [s]. The odometry's tilt never drifts, but its error changes slowly.
+GravityObservation observed_gravity(const SE3& T_O_B, double dt);
+
+/// Its part in the normal equations of a pose, H of the Gauss-Newton step and g = J^T W r, by the rotation error alone.
+struct LinearizedGravity {
+  Eigen::Matrix3d H;
+  Eigen::Vector3d g;
+};
+LinearizedGravity linearised(const GravityObservation& observation, const SE3& T_M_B);
+
 SE3 corrected(const SE3& T, const Vector6d& error);
 
 }  // namespace edged

@@ -29,7 +29,7 @@ constexpr std::size_t kParentCandidates = 10;  // keyframes that come into quest
 void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma) {
   T_O_B_ = T_O_B;
   T_M_B_ = T_M_O * T_O_B;
-  t_ = t;
+  t_ = updated_ = t;
   const Eigen::Vector3d up_B = T_M_B_.R().transpose() * Eigen::Vector3d::UnitZ();
   P_.topRows<6>().setZero();
   P_.leftCols<6>().setZero();
@@ -282,10 +282,20 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
     if (!row) return std::nullopt;
     rows.push_back(*row);
   }
-  const Update update = solved(gather(observations, rows));
+  Information sum = gather(observations, rows);
+  add_gravity(sum);
+  const Update update = solved(sum);
   if (!(misfit(observations, rows, update.error) < config_.max_misfit)) return std::nullopt;
   shrink(update);
+  updated_ = t_;
   return correct(update.error);
+}
+
+/// Adds the odometry's observation of gravity since the last update.
+void MapFilter::add_gravity(Information& sum) const {
+  const LinearizedGravity gravity = linearised(observed_gravity(T_O_B_, to_seconds(t_ - updated_)), T_M_B_);
+  sum.H.block<3, 3>(3, 3) += gravity.H;
+  sum.g.segment<3>(3) += gravity.g;
 }
 
 MapFilter::LinearizedPose MapFilter::linearise(std::size_t keyframe, const SE3& T_K_B) const {
@@ -318,8 +328,11 @@ double MapFilter::squared_distance(std::size_t keyframe, const SE3& T_K_B, const
 SE3 MapFilter::close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) {
   const LinearizedPose pose = linearise(keyframe, T_K_B);
   const Eigen::Matrix<double, 12, 6> weighed = pose.J.transpose() * covariance.inverse();
-  const Update update = solved({{{keyframe, 6}}, weighed * pose.J, weighed * pose.r});
+  Information sum{{{keyframe, 6}}, weighed * pose.J, weighed * pose.r};
+  add_gravity(sum);
+  const Update update = solved(sum);
   shrink(update);
+  updated_ = t_;
   return correct(update.error);
 }
 

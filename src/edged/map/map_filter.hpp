@@ -78,6 +78,7 @@ class MapFilter {
     Eigen::VectorXd g;
   };
   Information gather(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows) const;
+  void add_gravity(Information& sum) const;
   /// Of P_ and the errors by an information.
   struct Update {
     std::vector<Eigen::Index> moved;  ///< rows of P_ that change
@@ -106,7 +107,7 @@ class MapFilter {
   bool fixed_keyframes_;
   int max_active_;
   SE3 T_O_B_, T_M_B_;
-  Timestamp t_;
+  Timestamp t_, updated_;
   static constexpr Eigen::Index kInactive = -1;
   std::vector<SE3> T_M_K_;
   std::vector<Timestamp> activated_;                 ///< when it was in view last

@@ -35,6 +35,10 @@ class PoseGraph::Equations {
       block(b, a) += ab.transpose();
     }
   }
+  void add(std::size_t pose, const Matrix6d& H, const Vector6d& g) {
+    if (rows_[pose] != kKnown) block(rows_[pose], rows_[pose]) += H;
+    add(pose, g);
+  }
   void add(std::size_t pose, const Vector6d& g) {
     if (rows_[pose] != kKnown) g_.segment<6>(rows_[pose]) += g;
   }
@@ -80,6 +84,10 @@ void PoseGraph::add_step(std::size_t a, std::size_t b, const SE3& T_A_B, const M
   steps_.push_back({a, b, T_A_B, covariance.inverse()});
 }
 
+void PoseGraph::add_gravity(std::size_t body, const GravityObservation& observation) {
+  gravity_.push_back({body, observation});
+}
+
 void PoseGraph::add_observations(std::size_t body, std::vector<SE3> T_B_C,
                                  std::span<const MapObservation> observations) {
   views_.push_back({body, std::move(T_B_C), {observations.begin(), observations.end()}});
@@ -93,6 +101,15 @@ void PoseGraph::take(const Step& step, Equations& equations) const {
   equations.add(step.a, step.b, weighed * by_a, weighed, step.information);
   equations.add(step.a, weighed * r);
   equations.add(step.b, step.information * r);
+}
+
+void PoseGraph::take(const Gravity& gravity, Equations& equations) const {
+  const LinearizedGravity row = linearised(gravity.observation, T_M_B_[gravity.body]);
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  H.bottomRightCorner<3, 3>() = row.H;
+  g.tail<3>() = row.g;
+  equations.add(gravity.body, H, g);
 }
 
 void PoseGraph::take(const View& view, bool trusting, Equations& equations) const {
@@ -116,6 +133,7 @@ void PoseGraph::solve() {
   for (int i = 0; i < kIterations; ++i) {
     Equations equations(*this);
     for (const Step& step : steps_) take(step, equations);
+    for (const Gravity& gravity : gravity_) take(gravity, equations);
     for (const View& view : views_) take(view, i < kTrusting, equations);
     const std::optional<Eigen::VectorXd> errors = equations.solved();
     if (!errors || !errors->allFinite()) return;

@@ -64,6 +64,22 @@ TEST(PoseGraph, StraightensALoopWhoseDriftIsKnown) {
   EXPECT_LT(distance(chain.graph.poses()[middle], chain.truth[middle]), 0.2 * off) << "the drift is spread evenly";
 }
 
+TEST(PoseGraph, KeepsEachPoseUpright) {
+  const SE3 rolled(so3::exp({0.02, 0.0, 0.0}), {0.1, 0.0, 0.0});
+  PoseGraph graph;
+  SE3 guess;
+  graph.add_pose(guess);
+  for (std::size_t k = 1; k < kPoses; ++k) {
+    guess = guess * rolled;
+    graph.add_pose(guess);
+    graph.add_step(k - 1, k, rolled, 1e-3 * Matrix6d::Identity());
+    graph.add_gravity(k, observed_gravity(SE3(), 1.0));
+  }
+  graph.solve();
+  for (const SE3& pose : graph.poses()) EXPECT_LT(so3::log(pose.rotation()).norm(), 0.02);
+  EXPECT_NEAR(graph.poses().back().translation().x(), 0.1 * (kPoses - 1), 1e-3);
+}
+
 TEST(PoseGraph, IsHardlyMovedByAPointThatIsWrong) {
   Chain right, wrong;
   std::vector<MapObservation> observations = observations_from_last(right);

@@ -103,6 +103,7 @@ class TrajectorySmoother::Fit {
         const auto& [t_before, before] = *std::prev(node);
         graph_.add_step(number - 1, number, before.T_O_B.inverse() * at.T_O_B,
                         drift_covariance(config_, T_M_B, to_seconds(t - t_before)));
+        graph_.add_gravity(number, observed_gravity(at.T_O_B, to_seconds(t - t_before)));
       } else if (number > 0) {
         graph_.add_step(number - 1, number, graph_.poses()[number - 1].inverse() * T_M_B,
                         start_covariance(session.position_sigma, session.yaw_sigma));

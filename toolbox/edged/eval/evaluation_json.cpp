@@ -42,6 +42,7 @@ nlohmann::ordered_json to_json(const Evaluation& e) {
       {"ate_m", to_json(e.ate_m)},
       {"rotation_deg", to_json(e.rotation_deg)},
       {"yaw_deg", to_json(e.yaw_deg)},
+      {"tilt_deg", to_json(e.tilt_deg)},
   };
   for (const RelativeError& relative : e.relative) {
     json["rpe"].push_back({{"delta_s", relative.delta_s},

@@ -30,6 +30,12 @@ double yaw_error_deg(const SE3& truth, const SE3& estimate) {
   return kDegreesPerRadian * std::abs(std::atan2(R(1, 0), R(0, 0)));
 }
 
+/// Of up in the sensor's frame.
+double tilt_error_deg(const PosePair& pair) {
+  const Eigen::Vector3d up = pair.truth.R().row(2), estimated = pair.estimate.R().row(2);
+  return kDegreesPerRadian * std::atan2(up.cross(estimated).norm(), up.dot(estimated));
+}
+
 std::vector<PosePair> aligned(std::vector<PosePair> pairs, const Similarity& alignment) {
   for (PosePair& pair : pairs) pair.estimate = alignment * pair.estimate;
   return pairs;
@@ -167,7 +173,8 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.later_scale = extent_ratio(within(association.pairs, kLater));
 
   const std::vector<PosePair> pairs = aligned(association.pairs, result.alignment);
-  std::vector<double> position, rotation, yaw;
+  std::vector<double> position, rotation, yaw, tilt;
+  for (const PosePair& pair : association.pairs) tilt.push_back(tilt_error_deg(pair));
   for (const PosePair& pair : pairs) {
     position.push_back((pair.truth.translation() - pair.estimate.translation()).norm());
     rotation.push_back(angle_deg(pair.truth.rotation().conjugate() * pair.estimate.rotation()));
@@ -176,6 +183,7 @@ Evaluation evaluate(const Association& association, const Protocol& protocol, co
   result.ate_m = statistics(std::move(position));
   result.rotation_deg = statistics(std::move(rotation));
   result.yaw_deg = statistics(std::move(yaw));
+  result.tilt_deg = statistics(std::move(tilt));
   const bool is_short = result.path_length_m < kShortestPath_m;
   if (is_short) result.scale = std::numeric_limits<double>::quiet_NaN();
   const double per_metre = is_short ? std::numeric_limits<double>::quiet_NaN() : 1.0 / result.path_length_m;

@@ -74,6 +74,7 @@ struct Evaluation {
   Statistics ate_m;                 ///< position error
   Statistics rotation_deg;          ///< angle between true and aligned rotation
   Statistics yaw_deg;               ///< size of its part about the world's z
+  Statistics tilt_deg;              ///< of up before alignment, which hides it; the truth must be level
   double mpe_percent = 0.0;         ///< mean position error / path length
   double rotation_deg_per_m = 0.0;  ///< mean rotation error / path length
   double yaw_deg_per_m = 0.0;       ///< mean yaw error / path length

@@ -106,6 +106,17 @@ TEST(Evaluation, MeasuresYawAndRotationPerMetre) {
   EXPECT_EQ(result.ate_m.max, 0.0);
 }
 
+TEST(Evaluation, MeasuresTheTiltThatAlignmentHides) {
+  const Trajectory truth = winding_motion();
+  Trajectory estimate = truth;
+  const SE3 tilted(so3::exp({0.02, 0, 0}), {0.5, 0, 0});
+  for (StampedPose& pose : estimate) pose.T = tilted * pose.T;
+  const Evaluation result = evaluate(associate(truth, estimate), protocol("P3"));
+  EXPECT_NEAR(result.tilt_deg.mean, 0.02 * kDegrees, 1e-9);
+  EXPECT_NEAR(result.tilt_deg.max, 0.02 * kDegrees, 1e-9);
+  EXPECT_LT(result.ate_m.max, 1e-9);
+}
+
 TEST(RelativeError, OfASteadyDriftIsTheDriftPerDelta) {
   Trajectory truth, estimate;
   for (int i = 0; i <= 200; ++i) {
