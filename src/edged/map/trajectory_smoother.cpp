@@ -13,7 +13,7 @@ namespace edged {
 namespace {
 
 // Factor on the odometry's drift of the filter: matches on both sides bound it better than past ones alone.
-constexpr double kFinalDriftScale = 3.0;
+constexpr double kFinalDriftScale = 2.0;
 constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
 // Number of matched images that are optimized with the keyframes: each is coupled to the one before and to most
