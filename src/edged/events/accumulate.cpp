@@ -21,6 +21,14 @@ class BilinearSplat {
         max_x_(static_cast<float>(positive.cols - 1)),
         max_y_(static_cast<float>(positive.rows - 1)) {}
 
+  void prefetch(float x, float y, bool positive) const {
+    const float px = x + 1.0F, py = y + 1.0F;
+    if (!(px >= 0.0F && py >= 0.0F && px < max_x_ && py < max_y_)) return;
+    const float* top = data_[positive] + static_cast<int>(py) * stride_ + static_cast<int>(px);
+    __builtin_prefetch(top, 1);
+    __builtin_prefetch(top + stride_, 1);
+  }
+
   /// x, y [px] in the image without its border.
   void operator()(float x, float y, bool positive) const {
     const float px = x + 1.0F, py = y + 1.0F;
