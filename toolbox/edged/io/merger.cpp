@@ -64,18 +64,27 @@ void ArrivalQueue<T>::finish() {
 
 template <typename T>
 T ArrivalQueue<T>::pop() {
-  T item = std::move(sorted_.front());
-  sorted_.pop_front();
+  T item = std::move(sorted_[first_++]);
+  drop_popped();
   handed_out_ = time_of(item);
   return item;
 }
 
+/// Once they are half of all, so that each item is moved once on average.
+template <typename T>
+void ArrivalQueue<T>::drop_popped() {
+  if (first_ < (sorted_.size() + 1) / 2) return;
+  sorted_.erase(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(first_));
+  first_ = 0;
+}
+
 template <typename T>
 std::vector<T> ArrivalQueue<T>::pop_before(Timestamp end, std::size_t most) {
-  const auto last = sorted_.begin() + static_cast<std::ptrdiff_t>(std::min(most, sorted_.size()));
-  const auto cut = std::partition_point(sorted_.begin(), last, [end](const T& item) { return time_of(item) < end; });
-  std::vector<T> items(sorted_.begin(), cut);
-  sorted_.erase(sorted_.begin(), cut);
+  const std::span<T> held = std::span(sorted_).subspan(first_), first = held.first(std::min(most, held.size()));
+  const auto cut = std::ranges::partition_point(first, [end](const T& item) { return time_of(item) < end; });
+  std::vector<T> items(first.begin(), cut);
+  first_ += items.size();
+  drop_popped();
   if (!items.empty()) handed_out_ = time_of(items.back());
   return items;
 }
@@ -92,9 +101,9 @@ void ArrivalQueue<T>::insert(T item) {
     sorted_.push_back(std::move(item));
     return;
   }
-  const auto place =
-      std::upper_bound(sorted_.begin(), sorted_.end(), t, [](Timestamp a, const T& b) { return a < time_of(b); });
-  const bool repeated = t == newest() || (place != sorted_.begin() && time_of(*std::prev(place)) == t);
+  const auto begin = sorted_.begin() + static_cast<std::ptrdiff_t>(first_);
+  const auto place = std::upper_bound(begin, sorted_.end(), t, [](Timestamp a, const T& b) { return a < time_of(b); });
+  const bool repeated = t == newest() || (place != begin && time_of(*std::prev(place)) == t);
   if (repeated && !stamps_repeat_) return repair("duplicate stamp");
   repair("out of order, sorted in");
   sorted_.insert(place, std::move(item));

@@ -3,7 +3,6 @@
 // Merges measurements of several streams of a file into the order that Dataset guarantees.
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,10 +36,10 @@ class ArrivalQueue {
   /// The end of the stream.
   void finish();
   /// Discards the held items.
-  void clear() { sorted_.clear(); }
+  void clear() { sorted_.clear(), first_ = 0; }
 
-  const T* peek() const { return sorted_.empty() ? nullptr : &sorted_.front(); }
-  Timestamp next_stamp() const { return sorted_.empty() ? Timestamp::max() : time_of(sorted_.front()); }
+  bool empty() const { return first_ == sorted_.size(); }
+  Timestamp next_stamp() const { return empty() ? Timestamp::max() : time_of(sorted_[first_]); }
   T pop();
   /// The items before `end`, at most `most` of them.
   std::vector<T> pop_before(Timestamp end, std::size_t most);
@@ -49,11 +48,13 @@ class ArrivalQueue {
   std::optional<Timestamp> last() const { return last_; }
   /// Items before this stamp must be popped, because too many are held.
   Timestamp overflow() const {
-    return sorted_.size() <= max_held_ ? Timestamp::min() : time_of(sorted_[sorted_.size() - max_held_]) + Duration(1);
+    if (sorted_.size() - first_ <= max_held_) return Timestamp::min();
+    return time_of(sorted_[sorted_.size() - max_held_]) + Duration(1);
   }
 
  private:
   void insert(T item);
+  void drop_popped();
   Timestamp newest() const { return gate_.newest().value_or(Timestamp::min()); }
   std::size_t count_in_order(std::span<const T> items) const;
 
@@ -61,7 +62,8 @@ class ArrivalQueue {
   bool stamps_repeat_;
   std::size_t max_held_;
   Repairs& repairs_;
-  std::deque<T> sorted_;
+  std::vector<T> sorted_;  ///< from first_ on; those before have been popped
+  std::size_t first_ = 0;
   AheadGate<T> gate_;
   std::optional<Timestamp> last_;
   Timestamp handed_out_ = Timestamp::min();  ///< items before this stamp are too late
