@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/test_data.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 
@@ -40,11 +40,6 @@ Timestamp exact_stamp(const std::string& text) {
   std::string decimals = dot == std::string::npos ? "" : text.substr(dot + 1, 9);
   decimals.resize(9, '0');
   return timestamp_from_ns(std::stoll(text.substr(0, dot)) * 1'000'000'000 + std::stoll(decimals));
-}
-
-std::filesystem::path data_folder() {
-  const char* given = std::getenv("EDGED_DATA");
-  return std::filesystem::path(given ? given : EDGED_SOURCE_DIR "/../shared/data") / "ecd";
 }
 
 Tracks read_tracks(const std::filesystem::path& file) {
@@ -150,8 +145,8 @@ class EcdTracks : public testing::TestWithParam<const char*> {};
 
 TEST_P(EcdTracks, ReprojectToWithinAPixelUnderTheTrueMotion) {
   const std::string sequence = GetParam();
-  const auto tracks = read_tracks(data_folder() / "eklt_tracks" / (sequence + ".txt"));
-  const auto poses = read_poses(data_folder() / "groundtruth" / (sequence + ".txt"));
+  const auto tracks = read_tracks(data_folder() / "ecd" / "eklt_tracks" / (sequence + ".txt"));
+  const auto poses = read_poses(data_folder() / "ecd" / "groundtruth" / (sequence + ".txt"));
   if (tracks.empty() || poses.empty()) GTEST_SKIP() << "no data";
 
   for (const auto& [name, camera] : calibrations()) {
@@ -167,8 +162,8 @@ TEST_P(EcdTracks, ReprojectToWithinAPixelUnderTheTrueMotion) {
 TEST_P(EcdTracks, AreFollowedByTheMotionCaptureAFewMillisecondsLater) {
   // A finding on the data, not used anywhere: poses fit best when read 5 to 8 ms after the events.
   const std::string sequence = GetParam();
-  const auto tracks = every_fifth(read_tracks(data_folder() / "eklt_tracks" / (sequence + ".txt")));
-  const auto poses = read_poses(data_folder() / "groundtruth" / (sequence + ".txt"));
+  const auto tracks = every_fifth(read_tracks(data_folder() / "ecd" / "eklt_tracks" / (sequence + ".txt")));
+  const auto poses = read_poses(data_folder() / "ecd" / "groundtruth" / (sequence + ".txt"));
   if (tracks.empty() || poses.empty()) GTEST_SKIP() << "no data";
 
   double best_px = 1e9, best_ms = 0.0;

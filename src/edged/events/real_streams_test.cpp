@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -17,16 +16,12 @@
 #include <optional>
 #include <span>
 
+#include "edged/core/test_data.hpp"
 #include "edged/events/accumulate.hpp"
 #include "edged/events/sharpness.hpp"
 
 namespace edged {
 namespace {
-
-std::filesystem::path data_folder() {
-  if (const char* folder = std::getenv("EDGED_DATA")) return folder;
-  return std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data";
-}
 
 EventFrameConfig sharp_config(WarpInterpolation interpolation) {
   EventFrameConfig config;

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "edged/core/test_data.hpp"
 #include "edged/frontend/tracker.hpp"
 
 namespace edged {
@@ -16,8 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> euroc_images(std::size_t count) {
-  const char* data = std::getenv("EDGED_DATA");
-  const fs::path folder = fs::path(data ? data : EDGED_SOURCE_DIR "/../shared/data") / "euroc_mh01/mav0/cam0/data";
+  const fs::path folder = data_folder() / "euroc_mh01/mav0/cam0/data";
   std::vector<fs::path> images;
   if (!fs::is_directory(folder)) return images;
   for (const auto& entry : fs::directory_iterator(folder)) images.push_back(entry.path());

@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "edged/camera/undistort.hpp"
+#include "edged/core/test_data.hpp"
 #include "edged/dense/dense_mapper.hpp"
 
 namespace edged {
@@ -32,12 +33,7 @@ struct Rail {
   std::vector<RailImage> images;
 };
 
-std::filesystem::path slider_folder() {
-  const char* folder = std::getenv("EDGED_DATA");
-  return (folder != nullptr ? std::filesystem::path(folder)
-                            : std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data") /
-         "ecd" / "slider_depth";
-}
+std::filesystem::path slider_folder() { return data_folder() / "ecd" / "slider_depth"; }
 
 std::optional<SE3> pose_at(const Trajectory& poses, Timestamp t) {
   const auto next = std::ranges::lower_bound(poses, t, {}, &StampedPose::t);

@@ -3,23 +3,20 @@
 // Agreement with results that another program published for the same trajectories.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "edged/core/test_data.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/eval/test_trajectories.hpp"
 
 namespace edged {
 namespace {
 
-std::filesystem::path oracle() {
-  const char* data = std::getenv("EDGED_DATA");
-  return std::filesystem::path(data != nullptr ? data : EDGED_SOURCE_DIR "/../shared/data") / "eval_oracle";
-}
+std::filesystem::path oracle() { return data_folder() / "eval_oracle"; }
 
 /// Numbers of every line that is no comment.
 std::vector<std::vector<double>> read_rows(const std::filesystem::path& file) {

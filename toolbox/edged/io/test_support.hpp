@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/core/test_data.hpp"
 #include "edged/dataset.hpp"
 
 namespace edged {
@@ -57,12 +57,6 @@ class TempFolder {
 inline std::string read_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// The folder of real recordings. Tests are skipped if a recording is missing.
-inline std::filesystem::path data_folder() {
-  if (const char* own = std::getenv("EDGED_DATA")) return own;
-  return std::filesystem::path(EDGED_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
 /// A data set with given measurements.

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "edged/core/check.hpp"
+#include "edged/core/test_data.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/io/trajectory_io.hpp"
 #include "edged/sim/imu_model.hpp"
@@ -135,9 +135,7 @@ TEST(ImuModel, ReadsNoMoreThanItsRange) {
 }
 
 TEST(RecordedMotion, StaysCloseToItsSourceWithSaneAccelerations) {
-  const char* data = std::getenv("EDGED_DATA");
-  const std::filesystem::path folder =
-      std::filesystem::path(data ? data : EDGED_SOURCE_DIR "/../shared/data") / "ecd" / "groundtruth";
+  const std::filesystem::path folder = data_folder() / "ecd" / "groundtruth";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path());
