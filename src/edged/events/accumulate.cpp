@@ -23,7 +23,7 @@ class BilinearSplat {
 
   void prefetch(float x, float y, bool positive) const {
     const float px = x + 1.0F, py = y + 1.0F;
-    if (!(px >= 0.0F && py >= 0.0F && px < max_x_ && py < max_y_)) return;
+    if (!inside(px, py)) return;
     const float* top = data_[positive] + static_cast<int>(py) * stride_ + static_cast<int>(px);
     __builtin_prefetch(top, 1);
     __builtin_prefetch(top + stride_, 1);
@@ -32,7 +32,7 @@ class BilinearSplat {
   /// x, y [px] in the image without its border.
   void operator()(float x, float y, bool positive) const {
     const float px = x + 1.0F, py = y + 1.0F;
-    if (!(px >= 0.0F && py >= 0.0F && px < max_x_ && py < max_y_)) return;
+    if (!inside(px, py)) return;
     const int column = static_cast<int>(px), row = static_cast<int>(py);
     const float fx = px - static_cast<float>(column), fy = py - static_cast<float>(row);
     float* top = data_[positive] + row * stride_ + column;
@@ -45,6 +45,8 @@ class BilinearSplat {
   }
 
  private:
+  bool inside(float px, float py) const { return px >= 0.0F && py >= 0.0F && px < max_x_ && py < max_y_; }
+
   float* data_[2];
   std::ptrdiff_t stride_;
   float max_x_, max_y_;

@@ -101,8 +101,7 @@ class EventWarp {
   void visit(std::span<const Event> events, const UndistortTable& table, Nearer&& nearer, Sink&& sink) const {
     const auto width = static_cast<unsigned>(table.width());
     const auto height = static_cast<unsigned>(table.height());
-    // Table and image of a large sensor do not fit into the second cache: a third of the time is spent waiting for
-    // them.
+    // Table and image of a large sensor do not fit into the L2 cache.
     const auto prefetch = [&](const Event& event) {
       if (event.x < width && event.y < height) __builtin_prefetch(&table.at(event.x, event.y));
     };
