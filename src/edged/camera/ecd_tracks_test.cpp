@@ -42,6 +42,8 @@ Timestamp exact_stamp(const std::string& text) {
   return timestamp_from_ns(std::stoll(text.substr(0, dot)) * 1'000'000'000 + std::stoll(decimals));
 }
 
+std::filesystem::path ecd_folder() { return data_folder() / "ecd"; }
+
 Tracks read_tracks(const std::filesystem::path& file) {
   std::ifstream in(file);
   Tracks tracks;
@@ -145,8 +147,8 @@ class EcdTracks : public testing::TestWithParam<const char*> {};
 
 TEST_P(EcdTracks, ReprojectToWithinAPixelUnderTheTrueMotion) {
   const std::string sequence = GetParam();
-  const auto tracks = read_tracks(data_folder() / "ecd" / "eklt_tracks" / (sequence + ".txt"));
-  const auto poses = read_poses(data_folder() / "ecd" / "groundtruth" / (sequence + ".txt"));
+  const auto tracks = read_tracks(ecd_folder() / "eklt_tracks" / (sequence + ".txt"));
+  const auto poses = read_poses(ecd_folder() / "groundtruth" / (sequence + ".txt"));
   if (tracks.empty() || poses.empty()) GTEST_SKIP() << "no data";
 
   for (const auto& [name, camera] : calibrations()) {
@@ -162,8 +164,8 @@ TEST_P(EcdTracks, ReprojectToWithinAPixelUnderTheTrueMotion) {
 TEST_P(EcdTracks, AreFollowedByTheMotionCaptureAFewMillisecondsLater) {
   // A finding on the data, not used anywhere: poses fit best when read 5 to 8 ms after the events.
   const std::string sequence = GetParam();
-  const auto tracks = every_fifth(read_tracks(data_folder() / "ecd" / "eklt_tracks" / (sequence + ".txt")));
-  const auto poses = read_poses(data_folder() / "ecd" / "groundtruth" / (sequence + ".txt"));
+  const auto tracks = every_fifth(read_tracks(ecd_folder() / "eklt_tracks" / (sequence + ".txt")));
+  const auto poses = read_poses(ecd_folder() / "groundtruth" / (sequence + ".txt"));
   if (tracks.empty() || poses.empty()) GTEST_SKIP() << "no data";
 
   double best_px = 1e9, best_ms = 0.0;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "edged/core/directions.hpp"
+
 namespace edged {
 namespace {
 
@@ -17,7 +19,7 @@ double angle_between_pixels(const CameraModel& camera, const Eigen::Vector2d& a,
   const Eigen::Vector3d u = camera.pixel_to_ray(a), v = camera.pixel_to_ray(b);
   // On opposite sides of the axis; together they may be more than 180 degrees apart.
   if (u.z() < 0.0 || v.z() < 0.0) return std::atan2(u.head<2>().norm(), u.z()) + std::atan2(v.head<2>().norm(), v.z());
-  return std::atan2(u.cross(v).norm(), u.dot(v));
+  return angle_between(u, v);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "edged/core/directions.hpp"
+
 namespace edged {
 namespace {
 
@@ -16,8 +18,6 @@ using Eigen::Vector3d;
 
 constexpr double kMinDepth = 1e-6;  // [m]
 constexpr int kMaxIterations = 20;
-
-double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// The point nearest to all rays (C6).
 std::optional<Vector3d> nearest_point(std::span<const Ray> rays) {

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "edged/core/directions.hpp"
+
 namespace edged {
 namespace {
 
@@ -83,7 +85,7 @@ bool drift_explains(const SE3& by_odometry, const SE3& by_place, double drift_m)
   const Eigen::Vector3d up_by_place = by_place.rotation().conjugate() * Eigen::Vector3d::UnitZ();
   return (by_odometry.translation() - by_place.translation()).norm() <= drift_m &&
          so3::log(off).norm() <= kLoopDrift_rad + kLoopDrift_radpm * drift_m / kLoopDriftPerPath &&
-         std::atan2(up.cross(up_by_place).norm(), up.dot(up_by_place)) <= kLoopTilt_rad;
+         angle_between(up, up_by_place) <= kLoopTilt_rad;
 }
 
 bool LoopCloser::needless(const MapSearch& search, const KeyframeMap& map, Timestamp t) const {

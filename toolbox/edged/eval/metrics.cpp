@@ -9,6 +9,7 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
+#include "edged/core/directions.hpp"
 #include "edged/core/path_length.hpp"
 
 namespace edged {
@@ -32,8 +33,7 @@ double yaw_error_deg(const SE3& truth, const SE3& estimate) {
 
 /// Of up in the sensor's frame.
 double tilt_error_deg(const PosePair& pair) {
-  const Eigen::Vector3d up = pair.truth.R().row(2), estimated = pair.estimate.R().row(2);
-  return kDegreesPerRadian * std::atan2(up.cross(estimated).norm(), up.dot(estimated));
+  return kDegreesPerRadian * angle_between(pair.truth.R().row(2), pair.estimate.R().row(2));
 }
 
 std::vector<PosePair> aligned(std::vector<PosePair> pairs, const Similarity& alignment) {

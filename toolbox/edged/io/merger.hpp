@@ -38,8 +38,7 @@ class ArrivalQueue {
   /// Discards the held items.
   void clear() { sorted_.clear(), first_ = 0; }
 
-  bool empty() const { return first_ == sorted_.size(); }
-  Timestamp next_stamp() const { return empty() ? Timestamp::max() : time_of(sorted_[first_]); }
+  Timestamp next_stamp() const { return first_ == sorted_.size() ? Timestamp::max() : time_of(sorted_[first_]); }
   T pop();
   /// The items before `end`, at most `most` of them.
   std::vector<T> pop_before(Timestamp end, std::size_t most);
