@@ -3,7 +3,7 @@
 # What edged::edged needs, here and where it is installed. Every library comes from Debian 12; scripts/setup.sh installs
 # them.
 find_package(Eigen3 3.4 REQUIRED)
-set(edged_opencv core imgproc imgcodecs video features2d calib3d)
+set(edged_opencv core imgproc video features2d calib3d)
 if(EDGED_DEPTH_NETWORK)
   list(APPEND edged_opencv dnn)
 endif()

@@ -35,7 +35,7 @@ set(dependencies
     edged # its rigs and networks
     libeigen3-dev libopencv-dev libceres-dev libopengv-dev libyaml-cpp-dev libspdlog-dev nlohmann-json3-dev
     pkg-config libbz2-dev zlib1g-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libhdf5-dev
-    libblosc-dev liblzf-dev liboctomap-dev)
+    libblosc-dev liblzf-dev liboctomap-dev libpng-dev libturbojpeg0-dev)
 list(JOIN dependencies ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "visual-inertial odometry from events, frames and an IMU (development)

@@ -99,8 +99,8 @@ endif()
 
 # edged_test(NAME SOURCES ... DEPENDS ... TIMEOUT seconds LABELS label SHARDS number)
 # ctest runs each test of the program by itself. With SHARDS it runs the program that many times with a share of the tests
-# each, where programs take long to start: a fifth of a second, for the libraries behind opencv_imgcodecs. Under sanitizers,
-# which take longer, it always does, once without SHARDS (GTEST_FILTER of the presets leaves out of it).
+# each, where a program has many short ones. Under sanitizers, which take longer to start, it always does, once without
+# SHARDS (GTEST_FILTER of the presets leaves out of it).
 function(edged_test NAME)
   cmake_parse_arguments(ARG "" "TIMEOUT;LABELS;SHARDS" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)

@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build pkg-config git python3 ca-certificates xz-utils clang-format doxygen
   libopencv-dev libopencv-contrib-dev libeigen3-dev  # contrib: aruco, for the tags of calibration targets
   libceres-dev libopengv-dev
-  zlib1g-dev libyaml-cpp-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  zlib1g-dev libpng-dev libturbojpeg0-dev libyaml-cpp-dev libcli11-dev libcpp-httplib-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libtinyxml2-dev libzip-dev libflatbuffers-dev
   libhdf5-dev libblosc-dev liblzf-dev liboctomap-dev
   cyclonedds-dev                                           # topics of ROS 2

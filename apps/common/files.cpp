@@ -3,13 +3,13 @@
 #include "common/files.hpp"
 
 #include <unistd.h>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 
 #include <cerrno>
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
+#include "edged/io/image_codec.hpp"
 
 namespace edged {
 namespace {
@@ -68,9 +68,8 @@ void make_picture_folder(const std::filesystem::path& folder) {
 }
 
 void write_picture(const std::filesystem::path& file, const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(file.extension().string(), image, bytes);
-  write_file(file, std::string(bytes.begin(), bytes.end()));
+  const Bytes bytes = file.extension() == ".pgm" ? encode_pgm(image) : encode_png(image);
+  write_file(file, std::string(as_text(bytes)));
 }
 
 }  // namespace edged

@@ -3,8 +3,9 @@
 #include "common/pictures.hpp"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "edged/io/image_codec.hpp"
 
 namespace edged {
 namespace {
@@ -53,9 +54,7 @@ std::vector<unsigned char> track_picture(const cv::Mat& image, const std::vector
     if (track.age > 0) cv::line(colour, before, now, ink, 1, cv::LINE_AA);
     cv::circle(colour, now, 2, ink, 1, cv::LINE_AA);
   }
-  std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", colour, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return jpeg;
+  return encode_jpeg(colour, kQuality);
 }
 
 cv::Mat draw_contact_sheet(const std::vector<std::string>& title, const std::vector<SheetRow>& rows) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "common/evenly.hpp"
 #include "common/pictures.hpp"
+#include "edged/io/image_codec.hpp"
 #include "report/report_rows.hpp"
 #include "run/run_album.hpp"
 
@@ -33,8 +33,7 @@ void PlayerData::add(const EventPicture& picture) {
   }
   cv::Mat both;
   cv::vconcat(picture.positive, picture.negative, both);
-  Shot shot{picture.begin, picture.end, picture.events, {}, still_};
-  cv::imencode(".png", both, shot.png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  Shot shot{picture.begin, picture.end, picture.events, encode_png(both, 9), still_};
   bytes_ += bytes_of(shot, shots_.empty() ? nullptr : shots_.back().frame.get());
   shots_.push_back(std::move(shot));
   while (bytes_ > limit_bytes_ && shots_.size() > 1) thin_out();

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
@@ -188,9 +187,7 @@ class OverviewFile : public RunObserver {
   explicit OverviewFile(const RunContext& run) : run_(run) {}
   void on_step(const Step& step) override { moment_.consider(step); }
   void on_end(const RunEnd& end) override {
-    std::vector<unsigned char> png;
-    cv::imencode(".png", draw_overview(content_of(end)), png);
-    write_file(run_.folder / "overview.png", std::string(png.begin(), png.end()));
+    write_picture(run_.folder / "overview.png", draw_overview(content_of(end)));
   }
 
  private:

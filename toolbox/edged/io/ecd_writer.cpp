@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "edged/core/check.hpp"
@@ -18,6 +17,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/camera_names.hpp"
 #include "edged/io/dataset_folders.hpp"
+#include "edged/io/image_codec.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -141,7 +141,8 @@ class EcdWriter final : public RecordingWriter {
     if (count == 0) fs::create_directories(folder_ / images);
     const std::string name = fmt::format("{}/frame_{:08}.png", images, count++);
     const fs::path file = folder_ / name;
-    if (!cv::imwrite(file.string(), frame.image))
+    const Bytes png = encode_png(frame.image);
+    if (!(std::ofstream(file, std::ios::binary) << as_text(png)).flush())
       throw InputError::format("{}: cannot be written: is the disk full?", file.string());
     list.add(FMT_COMPILE("{} {}\n"), format_seconds(frame.t), name);
   }

@@ -11,11 +11,7 @@
 
 namespace edged {
 
-/// Decodes an image file in memory as read_gray_image() does; empty if it is damaged. Throws cv::Exception.
-cv::Mat decode_gray(ByteSpan bytes);
-
-/// Reads an image as 8-bit grey: colours by their luminance, the upper 8 of 16 bits (TUM-VI). Empty if the file is no
-/// image or damaged. Throws InputError if the file cannot be read.
+/// Reads an image by decode_gray(); empty if the file is no image or damaged. Throws InputError if it cannot be read.
 cv::Mat read_gray_image(const SourcePath& file);
 
 /// One line of a list of images.

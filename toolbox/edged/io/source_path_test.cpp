@@ -36,11 +36,7 @@ std::filesystem::path write_zip(const std::filesystem::path& file, const Files& 
   return file;
 }
 
-std::string png_of(int gray) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", cv::Mat(180, 240, CV_8UC1, cv::Scalar(gray)), bytes);
-  return {bytes.begin(), bytes.end()};
-}
+std::string png_of(int gray) { return std::string(as_text(encode_png(cv::Mat(180, 240, CV_8UC1, cv::Scalar(gray))))); }
 
 /// 2000 events, 100 IMU samples, 3 frames, ground truth, calibration; below `folder`.
 Files packed_ecd(const std::string& folder = "") {

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/test_data.hpp"
 #include "edged/dataset.hpp"
+#include "edged/io/image_codec.hpp"
 
 namespace edged {
 
@@ -46,8 +46,11 @@ class TempFolder {
   }
 
   void write_image(const std::string& name, int width = 240, int height = 180, int gray = 100) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    cv::imwrite((path_ / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(gray)));
+    write_image(name, cv::Mat(height, width, CV_8UC1, cv::Scalar(gray)));
+  }
+
+  void write_image(const std::string& name, const cv::Mat& image) const {
+    write(name, std::string(as_text(encode_png(image))));
   }
 
  private:

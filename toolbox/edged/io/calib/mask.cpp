@@ -5,7 +5,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <charconv>
-#include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/check.hpp"
 #include "edged/io/image_file.hpp"

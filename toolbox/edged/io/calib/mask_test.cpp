@@ -3,8 +3,6 @@
 // Masks from pictures: read, written as text, refused.
 #include <gmock/gmock.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "edged/io/calibration.hpp"
 #include "edged/io/test_support.hpp"
 
@@ -36,7 +34,7 @@ class MaskOfACamera : public ::testing::Test {
       for (int x = 0; x < width; ++x)
         if (std::hypot(x - width / 2.0, y - height / 2.0) > 0.6 * width || y >= height - 10)
           picture.at<std::uint8_t>(y, x) = 0;
-    cv::imwrite((folder_.path() / name).string(), picture);
+    folder_.write_image(name, picture);
   }
 
   TempFolder folder_;
@@ -65,7 +63,7 @@ TEST_F(MaskOfACamera, IsKeptInACalibrationThatIsWrittenAnew) {
 TEST_F(MaskOfACamera, IsRefusedWithItsKeyItsFileAndWhatToDo) {
   draw("small.png", 120, 90);
   folder_.write("black.txt", "no picture");
-  cv::imwrite((folder_.path() / "black.png").string(), cv::Mat(180, 240, CV_8UC1, cv::Scalar(0)));
+  folder_.write_image("black.png", 240, 180, 0);
   draw("cut.png");
   std::filesystem::resize_file(folder_.path() / "cut.png", 40);
   EXPECT_THAT(refusal("    mask: none.png\n"), HasSubstr("none.png: no such picture; its name is relative"));

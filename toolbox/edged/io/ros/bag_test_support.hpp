@@ -7,7 +7,6 @@
 #include <sqlite3.h>
 
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <random>
 #include <string>

@@ -3,6 +3,8 @@
 // Fields of messages. ROS 1 and ROS 2 differ in headers, times and the names of a few fields.
 #include "edged/io/ros/definitions.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -204,7 +206,7 @@ MessageDefinition definition_of(std::string_view type, Wire wire) {
   std::vector<std::string> inner;
   add_inner_types(definition.text, wire, inner);
   for (const std::string& name : inner)
-    definition.text += std::string(80, '=') + "\nMSG: " + name + "\n" + text_of(name, wire);
+    definition.text += fmt::format("{:=<80}\nMSG: {}\n{}", "", name, text_of(name, wire));
   return definition;
 }
 

@@ -7,14 +7,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/io/distortion.hpp"
-#include "edged/io/image_file.hpp"
+#include "edged/io/image_codec.hpp"
 #include "edged/io/text_parsing.hpp"
 
 namespace edged {
@@ -227,7 +226,7 @@ GrayImage read_image(WireReader message) try {
   throw Damage("image cannot be turned into grey");
 }
 
-GrayImage read_compressed_image(WireReader message) try {
+GrayImage read_compressed_image(WireReader message) {
   GrayImage out{message.header(), {}};
   message.text();  // format: detected from the data
   const ByteSpan data = message.bytes();
@@ -235,8 +234,6 @@ GrayImage read_compressed_image(WireReader message) try {
   out.image = decode_gray(data);
   if (out.image.empty()) throw Damage("image cannot be decoded");
   return out;
-} catch (const cv::Exception&) {
-  throw Damage("image cannot be decoded");
 }
 
 ExternalSample read_external(std::string_view type, WireReader message) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EuRoC folders of other data sets (the real one is in open_recording_test.cpp).
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
@@ -29,8 +30,7 @@ void write_tum_vi(const TempFolder& folder) {
                "1520530308249448626,1520530308249448626.png\n");
   for (const char* name : {"1520530308199447626", "1520530308249448626"}) {
     cv::Mat image(512, 512, CV_16UC1, cv::Scalar(0xab12));
-    std::filesystem::create_directories(folder.path() / "mav0/cam0/data");
-    cv::imwrite((folder.path() / "mav0/cam0/data" / (std::string(name) + ".png")).string(), image);
+    folder.write_image(fmt::format("mav0/cam0/data/{}.png", name), image);
   }
   folder.write("mav0/imu0/data.csv",
                "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y,w_RS_S_z,a_RS_S_x [m s^-2],a_RS_S_y,a_RS_S_z\n"
