@@ -111,7 +111,7 @@ struct VelocityConfig {
 
 struct EstimatorConfig {
   int recent_states = 3;                                 ///< newest states, keyframes or not
-  int keyframes = 6;                                     ///< older keyframes
+  int keyframes = 8;                                     ///< older keyframes
   double max_interval_s = 1.0;                           ///< IMU between two keyframes
   int iterations = 2;                                    ///< of the solver, a packet
   double cauchy_scale = 1.0;                             ///< robust loss of visual residuals

@@ -98,7 +98,7 @@ struct TrackerConfig {
 
 struct KeyframeConfig {
   double min_tracked_share = 0.6;
-  double parallax_deg = 2.0;
+  double parallax_deg = 1.5;
   double rotation_deg = 10.0;
   int min_tracks = 15;
   static constexpr double starved_interval_s = 0.2;
