@@ -15,16 +15,14 @@ constexpr int kInner = Patch::kSize - 2;
 constexpr int kSamples = kInner * kInner;
 using Samples = Eigen::Matrix<float, kSamples, 1>;
 
-/// Positions of a square of samples in the patch, relative to its middle.
-template <int Size>
+/// Positions of the inner pixels in the patch, relative to its centre.
 struct Offsets {
-  std::array<float, Size * Size> x, y;
+  std::array<float, kSamples> x, y;
   constexpr Offsets() : x(), y() {
-    for (int i = 0; i < Size * Size; ++i) x[i] = i % Size - 0.5F * (Size - 1), y[i] = i / Size - 0.5F * (Size - 1);
+    for (int i = 0; i < kSamples; ++i) x[i] = i % kInner - 0.5F * (kInner - 1), y[i] = i / kInner - 0.5F * (kInner - 1);
   }
 };
-template <int Size>
-constexpr Offsets<Size> kOffsets;
+constexpr Offsets kOffsets;
 
 float bilinear(const cv::Mat& image, double x, double y) {
   const int left = static_cast<int>(x), top = static_cast<int>(y);
@@ -67,13 +65,11 @@ std::optional<Template> template_of(const Patch& patch) {
   return made;
 }
 
-/// Samples the image around the middle of the patch, Size x Size pixels of the patch, row by row; false where that is
-/// outside. Alignment and map spend most of their time here: three plain loops, two of which the compiler vectorizes.
-template <int Size>
-bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, float* samples) {
-  constexpr int kCount = Size * Size;
+/// Samples the image at the place of the patch; false where that is outside, or uniform. Alignment and map spend most
+/// of their time here: three plain loops, the first and the last of which the compiler vectorizes.
+bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, Samples& samples) {
+  const Eigen::Vector2d reach = 0.5 * (kInner - 1) * A.cwiseAbs().rowwise().sum();
   constexpr double kRounding = 1e-4;  // of the positions below [px]
-  const Eigen::Vector2d reach = 0.5 * (Size - 1) * A.cwiseAbs().rowwise().sum();
   if (!((middle - reach).minCoeff() >= kRounding) || !(middle.x() + reach.x() < image.cols - 1 - kRounding) ||
       !(middle.y() + reach.y() < image.rows - 1 - kRounding))
     return false;
@@ -81,74 +77,46 @@ bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Ma
   const int left = static_cast<int>(first.x()), top = static_cast<int>(first.y());
   const Eigen::Vector2f m = (middle - Eigen::Vector2d(left, top)).cast<float>();
   const Eigen::Matrix2f a = A.cast<float>();
-  const std::uint8_t *upper = image.ptr(top) + left, *lower = image.ptr(top + 1) + left;
-  const auto bytes_of_row = static_cast<float>(static_cast<int>(image.step[0]));
-  std::array<float, kCount> fx, fy;
-  std::array<std::int32_t, kCount> offset;   // of the upper left pixel: below 2^24, so exact as a float
-  std::array<std::uint32_t, kCount> pixels;  // the four around a position, a byte each
-  for (int i = 0; i < kCount; ++i) {
-    const float right = kOffsets<Size>.x[i], down = kOffsets<Size>.y[i];
-    const float x = m.x() + a(0, 0) * right + a(0, 1) * down, y = m.y() + a(1, 0) * right + a(1, 1) * down;
-    const auto whole_x = static_cast<float>(static_cast<std::int32_t>(x));
-    const auto whole_y = static_cast<float>(static_cast<std::int32_t>(y));
-    offset[i] = static_cast<std::int32_t>(whole_y * bytes_of_row + whole_x);
-    fx[i] = x - whole_x, fy[i] = y - whole_y;
+  std::array<int, kSamples> x, y, upper_left, upper_right, lower_left, lower_right;
+  std::array<float, kSamples> fx, fy;
+  for (int i = 0; i < kSamples; ++i) {
+    const float place_x = m.x() + a(0, 0) * kOffsets.x[i] + a(0, 1) * kOffsets.y[i];
+    const float place_y = m.y() + a(1, 0) * kOffsets.x[i] + a(1, 1) * kOffsets.y[i];
+    x[i] = static_cast<int>(place_x), y[i] = static_cast<int>(place_y);
+    fx[i] = place_x - static_cast<float>(x[i]), fy[i] = place_y - static_cast<float>(y[i]);
   }
-  for (int i = 0; i < kCount; ++i) {
-    const std::uint8_t *above = upper + offset[i], *below = lower + offset[i];
-    pixels[i] = static_cast<std::uint32_t>(above[0] | above[1] << 8U) |
-                static_cast<std::uint32_t>(below[0] | below[1] << 8U) << 16U;
+  const std::uint8_t* corner = image.ptr(top) + left;
+  const auto row = static_cast<std::ptrdiff_t>(image.step[0]);
+  for (int i = 0; i < kSamples; ++i) {
+    const std::uint8_t* upper = corner + y[i] * row + x[i];
+    upper_left[i] = upper[0], upper_right[i] = upper[1];
+    lower_left[i] = upper[row], lower_right[i] = upper[row + 1];
   }
-  const auto byte = [&](int i, int shift) {
-    return static_cast<float>(static_cast<std::int32_t>(pixels[i] >> shift & 255U));
-  };
-  for (int i = 0; i < kCount; ++i) {
-    const float above = byte(i, 0) + fx[i] * (byte(i, 8) - byte(i, 0));
-    const float below = byte(i, 16) + fx[i] * (byte(i, 24) - byte(i, 16));
+  for (int i = 0; i < kSamples; ++i) {
+    const float above = static_cast<float>(upper_left[i]) + fx[i] * static_cast<float>(upper_right[i] - upper_left[i]);
+    const float below = static_cast<float>(lower_left[i]) + fx[i] * static_cast<float>(lower_right[i] - lower_left[i]);
     samples[i] = above + fy[i] * (below - above);
   }
-  return true;
+  return normalise(samples);
 }
 
-/// The patch at a place, normalized; false where that is outside, or uniform.
-bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Matrix2d& A, Samples& samples) {
-  return sample<kInner>(image, middle, A, samples.data()) && normalise(samples);
-}
-
-/// The position with the best correlation, whole steps of the patch away from `expected`, up to `radius` of them and in
-/// x and y up to Reach. The image is sampled once for all of them.
-template <int Reach>
+/// The integer pixel within the radius with the best correlation.
 std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& image, const Eigen::Vector2d& expected,
-                                      const Eigen::Matrix2d& A, double radius) {
-  using Square = Eigen::Matrix<float, kInner, kInner, Eigen::RowMajor>;
-  constexpr int kSize = kInner + 2 * Reach;
-  Eigen::Matrix<float, kSize, kSize, Eigen::RowMajor> around;
-  if (!sample<kSize>(image, expected, A, around.data())) {
-    if constexpr (Reach > 0) return search<Reach / 2>(wanted, image, expected, A, radius);
-    return std::nullopt;
-  }
-  around.array() -= around.mean();
-  const Eigen::Map<const Square> grey(wanted.grey.data());
+                                      const Eigen::Matrix2d& A, double radius_px) {
+  const int reach = static_cast<int>(std::ceil(radius_px));
   std::optional<Eigen::Vector2d> best;
   float most = 0.0F;
-  for (int dy = -Reach; dy <= Reach; ++dy) {
-    for (int dx = -Reach; dx <= Reach; ++dx) {
-      if (dx * dx + dy * dy > radius * radius) continue;
-      const auto seen = around.template block<kInner, kInner>(dy + Reach, dx + Reach);
-      const float sum = seen.sum(), squares = seen.squaredNorm() - sum * sum / kSamples;
-      if (!(squares >= 1.0F)) continue;
-      const float similarity = seen.cwiseProduct(grey).sum() / std::sqrt(squares);
-      if (similarity > most) most = similarity, best = expected + A * Eigen::Vector2d(dx, dy);
+  Samples seen;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      if (dx * dx + dy * dy > radius_px * radius_px) continue;
+      const Eigen::Vector2d place = expected + Eigen::Vector2d(dx, dy);
+      if (!sample(image, place, A, seen)) continue;
+      const float similarity = seen.dot(wanted.grey);
+      if (similarity > most) most = similarity, best = place;
     }
   }
   return best;
-}
-
-std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& image, const Eigen::Vector2d& expected,
-                                      const Eigen::Matrix2d& A, double radius_px) {
-  const double radius = radius_px / std::sqrt(std::abs(A.determinant()));  // in pixels of the patch
-  if (radius < 1.0) return expected;
-  return radius < 4.0 ? search<3>(wanted, image, expected, A, radius) : search<8>(wanted, image, expected, A, radius);
 }
 
 }  // namespace
@@ -200,13 +168,14 @@ std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, 
   Samples seen;
   for (int i = 0; i < config.iterations; ++i) {
     if (!sample(image, match.pixel, A, seen)) return std::nullopt;
-    match.similarity = seen.dot(wanted->grey);  // before a step that is small in the end
     const Eigen::Vector2d wrong = (wanted->gradient.transpose() * (seen - wanted->grey)).cast<double>();
     const Eigen::Vector2d step = A * (H_inverse * wrong);
     match.pixel -= step;
     if ((match.pixel - *nearest).norm() > kFarthest_px) return std::nullopt;
     if (step.norm() < kConverged_px) break;
   }
+  if (!sample(image, match.pixel, A, seen)) return std::nullopt;
+  match.similarity = seen.dot(wanted->grey);
   return match.similarity >= config.min_similarity ? std::optional(match) : std::nullopt;
 }
 
