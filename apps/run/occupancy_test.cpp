@@ -8,11 +8,11 @@
 
 #include <cmath>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <tuple>
 
 #include "common/files.hpp"
-#include "edged/io/image_file.hpp"
 #include "edged/io/test_support.hpp"
 #include "report/point_cloud.hpp"
 
@@ -98,8 +98,8 @@ TEST_F(OccupancyFiles, AreReadByOctoMap) {
 TEST_F(OccupancyFiles, AreReadAsByTheRosMapServer) {
   write_occupancy(folder_.path(), tree_, {-0.1, 0.1});
   const YAML::Node yaml = YAML::LoadFile((folder_.path() / "map.yaml").string());
-  const cv::Mat image = read_gray_image(folder_.path() / yaml["image"].as<std::string>());
-  ASSERT_FALSE(image.empty());
+  const cv::Mat image = cv::imread((folder_.path() / yaml["image"].as<std::string>()).string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(image.type(), CV_8UC1);
   const auto space = [&](double x, double y) {
     const double voxel_m = yaml["resolution"].as<double>();
     const int column = static_cast<int>(std::floor((x - yaml["origin"][0].as<double>()) / voxel_m));

@@ -8,7 +8,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <csetjmp>
@@ -23,10 +22,6 @@ namespace edged {
 namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26U;
-
-bool starts_with(ByteSpan bytes, ByteSpan start) {
-  return bytes.size() >= start.size() && std::ranges::equal(bytes.first(start.size()), start);
-}
 
 bool is_size_allowed(std::uint64_t width, std::uint64_t height) {
   return width > 0 && height > 0 && width <= kMostPixels && height <= kMostPixels / width;
@@ -163,12 +158,10 @@ cv::Mat read_pgm(ByteSpan bytes) {
 }  // namespace
 
 cv::Mat decode_gray(ByteSpan bytes) {
-  constexpr std::array<std::uint8_t, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  constexpr std::array<std::uint8_t, 3> kJpeg = {0xff, 0xd8, 0xff};
-  constexpr std::array<std::uint8_t, 2> kPgm = {'P', '5'};
-  if (starts_with(bytes, kJpeg)) return read_jpeg(bytes);
-  if (starts_with(bytes, kPgm)) return read_pgm(bytes);
-  if (!starts_with(bytes, kPng)) return {};
+  const std::string_view file = as_text(bytes);
+  if (file.starts_with("\xff\xd8\xff")) return read_jpeg(bytes);
+  if (file.starts_with("P5")) return read_pgm(bytes);
+  if (!file.starts_with("\x89PNG\r\n\x1a\n")) return {};
   cv::Mat image;
   std::vector<png_bytep> rows;
   return read_png(bytes, image, rows) ? image : cv::Mat();

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
@@ -50,6 +51,29 @@ TEST(ImageCodec, TakesTheUpperBitsOfDeepImages) {
   ASSERT_EQ(read.size(), cv::Size(2, 1));
   EXPECT_EQ(read.at<std::uint8_t>(0, 0), 255);
   EXPECT_EQ(read.at<std::uint8_t>(0, 1), 128);
+}
+
+/// An independent reader and writer.
+TEST(ImageCodec, AgreesWithOpenCv) {
+  cv::Mat colour, transparent, deep, deep_colour;
+  cv::applyColorMap(gray_waves(), colour, cv::COLORMAP_JET);
+  cv::cvtColor(colour, transparent, cv::COLOR_BGR2BGRA);
+  gray_waves().convertTo(deep, CV_16U, 250.0, 3.0);
+  colour.convertTo(deep_colour, CV_16U, 250.0, 3.0);
+  Bytes bytes;
+  for (const char* extension : {".png", ".jpg", ".pgm"}) {
+    for (const cv::Mat& image : {gray_waves(), colour, transparent, deep, deep_colour}) {
+      const std::string what = std::string(extension) + ", type " + std::to_string(image.type());
+      if (extension != std::string(".png") && (image.depth() != CV_8U || image.channels() == 4)) continue;
+      if (extension == std::string(".pgm") && image.channels() != 1) continue;
+      ASSERT_TRUE(cv::imencode(extension, image, bytes)) << what;
+      EXPECT_EQ(most_different(decode_gray(bytes), cv::imdecode(bytes, cv::IMREAD_GRAYSCALE)), 0.0) << what;
+    }
+  }
+  for (const cv::Mat& image : {gray_waves(), colour, deep})
+    EXPECT_EQ(most_different(cv::imdecode(encode_png(image), cv::IMREAD_UNCHANGED), image), 0.0) << image.type();
+  EXPECT_EQ(most_different(cv::imdecode(encode_pgm(gray_waves()), cv::IMREAD_UNCHANGED), gray_waves()), 0.0);
+  EXPECT_LE(most_different(cv::imdecode(encode_jpeg(gray_waves(), 95), cv::IMREAD_UNCHANGED), gray_waves()), 5.0);
 }
 
 TEST(ImageCodec, ReadsAFileOfACamera) {
