@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 namespace edged {
 namespace {

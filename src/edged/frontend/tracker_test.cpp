@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <opencv2/core.hpp>
 
 #include "edged/core/check.hpp"
 #include "edged/frontend/test_scene.hpp"

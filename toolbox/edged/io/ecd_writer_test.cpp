@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <opencv2/core.hpp>
+
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"

@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <map>
+#include <opencv2/core.hpp>
 #include <random>
 
 #include "edged/io/calibration.hpp"
