@@ -16,6 +16,7 @@ struct CameraCheck {
   bool has_extrinsics = true;
   std::optional<GyroAgreement> agreement;  ///< nothing without enough rotations to compare
   std::optional<ClockRate> clock = {};     ///< if the IMU clock runs at another rate than the camera clock
+  Duration least_turning{0};               ///< a contradiction in a shorter turning_time() does not count
 
   /// True if the gyro explains enough of the rotation for the other results to be reliable.
   bool sure() const { return agreement && agreement->unexplained < 0.5; }

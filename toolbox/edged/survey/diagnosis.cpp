@@ -311,6 +311,17 @@ bool judge_size(const CameraCheck& check, const Survey& s, Findings& out) {
   return fits || seen.empty();
 }
 
+void judge_calibration(const CameraCheck& check, Findings& out) {
+  if (check.agreement->mirrored)
+    return out.error(
+        fmt::format("camera {}: the gyro turns the other way, as if it were seen in a mirror", check.camera.name),
+        "one or all three of its axes have the wrong sign: a right-handed IMU has x turning towards y about z");
+  judge_shift(check, out);
+  check.has_extrinsics ? judge_rotation(check, out) : tell_rotation(check, out);
+  judge_scale(check, out);
+  judge_gyro_scale(check, out);
+}
+
 void judge_camera(const CameraCheck& check, Findings& out) {
   const std::string& name = check.camera.name;
   if (!check.agreement)
@@ -321,14 +332,16 @@ void judge_camera(const CameraCheck& check, Findings& out) {
         "camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % of "
         "its turning unexplained)",
         name, 100 * std::min(1.0, check.agreement->unexplained)));
-  if (check.agreement->mirrored)
-    return out.error(
-        fmt::format("camera {}: the gyro turns the other way, as if it were seen in a mirror", name),
-        "one or all three of its axes have the wrong sign: a right-handed IMU has x turning towards y about z");
-  judge_shift(check, out);
-  check.has_extrinsics ? judge_rotation(check, out) : tell_rotation(check, out);
-  judge_scale(check, out);
-  judge_gyro_scale(check, out);
+  Findings found;
+  judge_calibration(check, found);
+  const bool contradicts =
+      std::ranges::any_of(found.list, [](const Finding& f) { return f.severity >= Severity::Warning; });
+  if (contradicts && check.agreement->turning < check.least_turning)
+    return out.note(fmt::format("camera {}: turns for {:.1f} s only, too little to check its calibration ({} s are "
+                                "needed)",
+                                name, to_seconds(check.agreement->turning), to_seconds(check.least_turning)),
+                    "record more in which the sensor turns about all axes before a scene with texture");
+  out.list.insert(out.list.end(), found.list.begin(), found.list.end());
 }
 
 void judge_truth(const Survey& s, Findings& out) {

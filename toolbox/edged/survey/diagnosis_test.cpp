@@ -35,7 +35,8 @@ Survey healthy() {
 
 CameraCheck agreeing() {
   GyroAgreement found;
-  found.turns = 200, found.unexplained = 0.1, found.time_sigma_s = 1e-4, found.rotation_sigma = 2e-3;
+  found.turns = 200, found.turning = std::chrono::seconds(10), found.unexplained = 0.1, found.time_sigma_s = 1e-4,
+  found.rotation_sigma = 2e-3;
   found.rotation_covariance = 4e-6 * Eigen::Matrix3d::Identity();
   return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
 }
@@ -107,6 +108,13 @@ TEST(Diagnosis, NamesAnImuWhoseClockRunsAtAnotherRateAndNoCalibration) {
   s.imu = stream(2000, 0, 10.2);
   EXPECT_THAT(remedy_of(diagnose(s, true, {check}), Severity::Error, "the IMU's clock runs at 1.020 times"),
               HasSubstr("--imu-clock-rate 1.020"));
+}
+
+TEST(Diagnosis, BelievesNoOtherClockWhereACameraTurnsAsCalibrated) {
+  CameraCheck short_one = agreeing();
+  short_one.clock = ClockRate{2.11, 0.95};
+  for (const Finding& f : diagnose(healthy(), true, {agreeing(), short_one}))
+    EXPECT_EQ(f.severity, Severity::Good) << f.text;
 }
 
 TEST(Diagnosis, NamesAnotherClockOrUnitByTheLengthsWhereNoCameraTells) {
@@ -222,6 +230,19 @@ TEST(Diagnosis, JudgesNoCalibrationByMotionThatSaysNothing) {
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
   check.agreement->unexplained = 0.8;
   EXPECT_EQ(remedy_of(diagnose(healthy(), true, {check}), Severity::Note, "80 % of its turning unexplained"), "");
+}
+
+TEST(Diagnosis, JudgesNoCalibrationByAShortTurning) {
+  CameraCheck check = agreeing();
+  check.least_turning = std::chrono::seconds(3);
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  EXPECT_NE(remedy_of(diagnose(healthy(), true, {check}), Severity::Error, "contradicts the gyro"), "NO SUCH FINDING");
+  check.agreement->turning = std::chrono::milliseconds(1800);
+  const std::vector<Finding> findings = diagnose(healthy(), true, {check});
+  EXPECT_THAT(remedy_of(findings, Severity::Note, "turns for 1.8 s only"), HasSubstr("record more"));
+  EXPECT_EQ(std::ranges::count(findings, Severity::Error, &Finding::severity), 0);
+  check.agreement->R_B_C.setIdentity();
+  for (const Finding& f : diagnose(healthy(), true, {check})) EXPECT_EQ(f.severity, Severity::Good) << f.text;
 }
 
 TEST(Diagnosis, JudgesARotationBySizeAndSigma) {

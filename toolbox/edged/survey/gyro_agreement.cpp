@@ -196,6 +196,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
   agreement.rotation_sigma = std::sqrt(agreement.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
   use_rays(turns, gyro, agreement);
   agreement.common_error = common_error_of(agreement);
+  agreement.turning = turning_time(turns);
   agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > kMostShift - kShiftStep;
   return agreement;
 }

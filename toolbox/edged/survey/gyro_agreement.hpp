@@ -14,6 +14,7 @@ namespace edged {
 
 struct GyroAgreement {
   std::size_t turns = 0;     ///< compared
+  Duration turning{0};       ///< turning_time() of them
   double unexplained = 1.0;  ///< share of the rotation; above about 0.5 the other results are unreliable
   Duration time_offset{0};   ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;

@@ -48,6 +48,17 @@ TEST(GyroAgreement, FindsShiftAndRotationOfAnAnalyticMotion) {
   }
 }
 
+TEST(GyroAgreement, CountsTheTimeOfTurningOnce) {
+  const Timestamp begin = timestamp_from_seconds(1);
+  const auto turn = [&](int from_ms, int to_ms, double rad_per_s) {
+    const std::chrono::milliseconds from(from_ms), to(to_ms);
+    return Turn{begin + from, begin + to, Eigen::Vector3d(0, rad_per_s * to_seconds(to - from), 0)};
+  };
+  EXPECT_EQ(turning_time(std::vector<Turn>()), Duration(0));
+  const std::vector<Turn> turns = {turn(0, 80, 0.5), turn(40, 120, 0.5), turn(80, 160, 0.1), turn(200, 280, 0.5)};
+  EXPECT_EQ(turning_time(turns), std::chrono::milliseconds(80 + 40 + 80));
+}
+
 TEST(GyroAgreement, SearchesAroundTheCalibratedOffsetAndSaysWhenItIsFartherOff) {
   const std::vector<Turn> turns = turns_of(8, kTurned, 0.15);
   const auto found = compare_with_gyro(turns, gyro_of(8), std::chrono::milliseconds(140));

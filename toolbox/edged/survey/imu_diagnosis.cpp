@@ -79,7 +79,10 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
   if (!visual) return;
   const double cameras_s = to_seconds(visual->second - visual->first), ratio = s.imu_span_ratio();
   const auto known = known_span_ratio(s, cameras_s);
-  const auto measured = std::ranges::find_if(cameras, [](const CameraCheck& c) { return c.clock.has_value(); });
+  const bool agrees = std::ranges::any_of(cameras, turns_as_calibrated);
+  // Rates that differ by less than a tenth let a camera turn about as calibrated.
+  const auto measured = std::ranges::find_if(
+      cameras, [=](const CameraCheck& c) { return c.clock && !(agrees && std::abs(c.clock->rate - 1.0) > 0.1); });
   if (measured != cameras.end()) {
     const bool as_lasts = known && std::abs(measured->clock->rate / *known - 1.0) < kSameLength;
     // A few seconds of rotation determine the rate to a few per cent only.
@@ -94,8 +97,7 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
         fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver",
                     rate));
   }
-  if (std::ranges::any_of(cameras, turns_as_calibrated) || !known ||
-      std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
+  if (agrees || !known || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
     return;
   const bool unit = *known > 10.0 || *known < 0.1;
   out.imu_unusable(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"

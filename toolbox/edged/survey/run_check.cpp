@@ -17,7 +17,6 @@ namespace edged {
 namespace {
 
 constexpr int kCorners = 40;
-constexpr double kLeastRate = 0.15;                          // threshold of rotation [rad/s]
 constexpr double kNewest = 0.05;                             // weight of a sample in the running mean of the gyro rate
 constexpr double kUnexplained = 0.5;                         // above it the comparison is unreliable
 constexpr Duration kEnough = std::chrono::seconds(3);        // duration of rotation after which more data adds little
@@ -55,9 +54,9 @@ double grossly_off_deg(const std::vector<Turn>& turns, const GyroIntegral& gyro,
   return median_error(turns, gyro, found, R) > kClearlyWorse * best ? off_deg : 0.0;
 }
 
-/// The least duration of rotation for the check of a camera. With less, corners on images of events may give wrong
+/// The duration of rotation before the first comparison. With less, corners on images of events may give wrong
 /// rotations that resemble those of a mirrored gyro.
-Duration least_turning(const RigCamera& camera) {
+Duration first_look(const RigCamera& camera) {
   return std::chrono::seconds(camera.modality == Modality::Events ? 2 : 1);
 }
 
@@ -116,7 +115,7 @@ RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics
     if (used.find(modality) == nullptr) continue;
     const RigCamera& camera = *used.find(modality);
     cameras_.push_back({camera, VisualTurns(camera, kCorners)});
-    cameras_.back().next_look = least_turning(camera);
+    cameras_.back().next_look = first_look(camera);
     cameras_.back().twin = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
     cameras_.back().waits = cameras_.back().twin;
   }
@@ -171,15 +170,12 @@ std::size_t RunCheck::surveyed_every(const Measurement& measurement) {
 
 void RunCheck::follow(Camera& camera, const Measurement& measurement) {
   if (camera.done || camera.waits) return;
-  const bool pauses = camera.turning >= least_turning(camera.given) && (visual_ / kBurst) % 2 == 1;
-  if (pauses || !(rate_ > kLeastRate)) return;
+  const bool pauses = camera.turning >= first_look(camera.given) && (visual_ / kBurst) % 2 == 1;
+  if (pauses || !(rate_ > kLeastTurningRate)) return;
   camera.visual.add(measurement);
   const std::vector<Turn>& turns = camera.visual.turns();
-  for (; camera.counted < turns.size(); ++camera.counted) {
-    const Turn& turn = turns[camera.counted];
-    const Timestamp before = camera.counted == 0 ? turn.begin : std::max(turn.begin, turns[camera.counted - 1].end);
-    if (turn.phi_C.norm() > kLeastRate * to_seconds(turn.end - turn.begin)) camera.turning += turn.end - before;
-  }
+  if (turns.size() > camera.counted) camera.turning = turning_time(turns);
+  camera.counted = turns.size();
   if (camera.turning < camera.next_look) return;
   camera.next_look = camera.turning * 3 / 2;
   compare(camera);
@@ -256,7 +252,7 @@ bool RunCheck::agrees_with(const RigCamera& estimated) const {
 
 std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
   for (Camera& camera : cameras_) {
-    if (!camera.done && !camera.waits && camera.turning >= least_turning(camera.given)) compare(camera);
+    if (!camera.done && !camera.waits && camera.turning >= first_look(camera.given)) compare(camera);
     camera.done = true;
   }
   return judge(surveyor_.result(dataset, truth));

@@ -35,6 +35,16 @@ TrackerConfig with_corners(int corners) {
 
 }  // namespace
 
+Duration turning_time(std::span<const Turn> turns) {
+  Duration time{0};
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Turn& turn = turns[i];
+    const Timestamp from = i == 0 ? turn.begin : std::max(turn.begin, turns[i - 1].end);
+    if (turn.phi_C.norm() > kLeastTurningRate * to_seconds(turn.end - turn.begin)) time += turn.end - from;
+  }
+  return time;
+}
+
 std::optional<Eigen::Matrix3d> rotation_between(std::span<const Eigen::Vector2d> begin,
                                                 std::span<const Eigen::Vector2d> end) {
   if (begin.size() < kFewestPairs) return std::nullopt;

@@ -26,6 +26,11 @@ struct Turn {
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> rays = {};
 };
 
+/// Slower turns say little about the mounting of a camera [rad/s].
+inline constexpr double kLeastTurningRate = 0.15;
+/// How long a camera turns faster than that, each instant counted once.
+Duration turning_time(std::span<const Turn> turns);
+
 /// Rotation between two views of the same points, for any translation of the camera: p_begin ~ R * (p_end - t). Points
 /// lie on the unit plane. Nothing with too few points. (Kneip and Lynen, Direct Optimization of
 /// Frame-to-Frame Rotation, ICCV 2013; as in OpenGV.)
