@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """What the pages promise: docs/demands.md holds, commands on any page have flags that exist, messages in docs/faq.md are
-those of the source, each design decision has a page with links that exist, ARCHITECTURE.md stays a map.
-Usage: EDGED=path/to/edged docs_test.py. Decisions, Architecture and Messages never start it."""
+those of the source, options that messages name exist, each design decision has a page with links that exist,
+ARCHITECTURE.md stays a map.
+Usage: EDGED=path/to/edged docs_test.py. Decisions and Architecture never start it."""
 import functools
 import pathlib
 import re
@@ -114,13 +115,27 @@ class Commands(unittest.TestCase):
 class Messages(unittest.TestCase):
     LITERALS = re.compile(r'"(?:\\.|[^"\\\n])*"(?:\s*"(?:\\.|[^"\\\n])*")*')
 
+    @classmethod
+    def said(cls, source):
+        """The string literals of a file, those joined that follow one another."""
+        return ["".join(re.findall(r'"((?:\\.|[^"\\\n])*)"', text)) for text in cls.LITERALS.findall(source.read_text())]
+
+    SOURCES = [path for folder in ("apps", "src", "toolbox") for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
+               if not path.name.endswith("_test.cpp")]
+
+    def test_options_that_messages_name_exist(self):
+        options = set(re.findall(r"^(\S+) = ", edged("config", ".").stdout, re.MULTILINE))
+        self.assertGreater(len(options), 100)
+        groups = "|".join(sorted({option.partition(".")[0] for option in options}))
+        for source in (path for path in self.SOURCES if path.name != "renamed_options.hpp"):  # holds former ones
+            named = re.findall(rf"(?<![\w./])((?:{groups})(?:\.\w+)+)", "\n".join(self.said(source)))
+            for name in (name for name in named if not name.endswith((".csv", ".hpp", ".pgm", ".ply", ".yaml"))):
+                with self.subTest(source=str(source.relative_to(ROOT)), name=name):
+                    self.assertTrue(any(option.removeprefix("expert.") == name.removeprefix("expert.") or
+                                        option.startswith(f"{name}.") for option in options))
+
     def test_messages_in_the_faq_are_those_of_the_source(self):
-        said = []
-        for source in (path for folder in ("apps", "src", "toolbox") for path in (ROOT / folder).rglob("*.[ch]pp")):
-            if not source.name.endswith("_test.cpp"):
-                said += ["".join(re.findall(r'"((?:\\.|[^"\\\n])*)"', text))
-                         for text in self.LITERALS.findall(source.read_text())]
-        everything = "\n".join(said)
+        everything = "\n".join(text for source in self.SOURCES for text in self.said(source))
         headings = re.findall(r"^### `(.+)`$", (ROOT / "docs/faq.md").read_text(), re.MULTILINE)
         self.assertGreater(len(headings), 20)
         for heading in headings:

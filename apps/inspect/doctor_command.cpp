@@ -61,7 +61,7 @@ std::string next_step(const DoctorOptions& options, const Recording& recording, 
 }
 
 /// For which a contradiction of the gyro counts. With less, corners on images of events may give a rotation or a time
-/// offset far from a right calibration: 13 of 60 simulated flights with 1.8 s of motion did, 5 of 60 with 2.8.
+/// offset far from a right calibration: 13 of 60 simulated flights with 1.8 s of motion did, 7 of 60 with 2.8.
 Duration least_turning(Modality modality) { return std::chrono::seconds(modality == Modality::Events ? 3 : 1); }
 
 int run_doctor(const DoctorOptions& options) {

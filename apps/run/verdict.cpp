@@ -165,7 +165,8 @@ void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<F
        fmt::format("live: too slow for this recording: {:.0f} % of the events dropped, latency {:.2f} s "
                    "(median; live.max_age_s {:g})",
                    100 * dropped, late_s, live.max_age_s),
-       "lower packets.max_rate_hz or the number of features, choose another --mode, or use a faster computer"});
+       "raise packets.min_interval_s, lower tracker.detector.max_features, choose another --mode, or use a faster "
+       "computer"});
 }
 
 /// An offset between the stamps explains the other contradictions.
