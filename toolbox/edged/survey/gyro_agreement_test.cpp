@@ -57,6 +57,7 @@ TEST(GyroAgreement, CountsTheTimeOfTurningOnce) {
   EXPECT_EQ(turning_time(std::vector<Turn>()), Duration(0));
   const std::vector<Turn> turns = {turn(0, 80, 0.5), turn(40, 120, 0.5), turn(80, 160, 0.1), turn(200, 280, 0.5)};
   EXPECT_EQ(turning_time(turns), std::chrono::milliseconds(80 + 40 + 80));
+  EXPECT_EQ(turning_time(turns, 1), std::chrono::milliseconds(40 + 80)) << "as they come";
 }
 
 TEST(GyroAgreement, SearchesAroundTheCalibratedOffsetAndSaysWhenItIsFartherOff) {

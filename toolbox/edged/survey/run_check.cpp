@@ -174,7 +174,7 @@ void RunCheck::follow(Camera& camera, const Measurement& measurement) {
   if (pauses || !(rate_ > kLeastTurningRate)) return;
   camera.visual.add(measurement);
   const std::vector<Turn>& turns = camera.visual.turns();
-  if (turns.size() > camera.counted) camera.turning = turning_time(turns);
+  camera.turning += turning_time(turns, camera.counted);
   camera.counted = turns.size();
   if (camera.turning < camera.next_look) return;
   camera.next_look = camera.turning * 3 / 2;

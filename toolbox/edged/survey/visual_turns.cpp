@@ -35,9 +35,9 @@ TrackerConfig with_corners(int corners) {
 
 }  // namespace
 
-Duration turning_time(std::span<const Turn> turns) {
+Duration turning_time(std::span<const Turn> turns, std::size_t first) {
   Duration time{0};
-  for (std::size_t i = 0; i < turns.size(); ++i) {
+  for (std::size_t i = first; i < turns.size(); ++i) {
     const Turn& turn = turns[i];
     const Timestamp from = i == 0 ? turn.begin : std::max(turn.begin, turns[i - 1].end);
     if (turn.phi_C.norm() > kLeastTurningRate * to_seconds(turn.end - turn.begin)) time += turn.end - from;

@@ -28,8 +28,8 @@ struct Turn {
 
 /// Slower turns say little about the mounting of a camera [rad/s].
 inline constexpr double kLeastTurningRate = 0.15;
-/// How long a camera turns faster than that, each instant counted once.
-Duration turning_time(std::span<const Turn> turns);
+/// How long a camera turns faster than that, in the turns from `first` on; each instant is counted once.
+Duration turning_time(std::span<const Turn> turns, std::size_t first = 0);
 
 /// Rotation between two views of the same points, for any translation of the camera: p_begin ~ R * (p_end - t). Points
 /// lie on the unit plane. Nothing with too few points. (Kneip and Lynen, Direct Optimization of
