@@ -13,7 +13,7 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/config ${PROJECT_BINARY_DIR}/share/edged 
 
 # Options of every target of ours, and of ours alone. No -march and no fused multiply-add: the same bits on every
 # machine. What -fPIC keeps from being inlined, may be; nothing reads errno or traps of floating-point functions: 2 to 6 %
-# of the processor time, at the same bits (bench/log/speed.md).
+# of the processor time, at the same bits.
 add_library(edged_options INTERFACE)
 target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
                                                -fno-semantic-interposition -fno-math-errno -fno-trapping-math

@@ -224,21 +224,20 @@ class Bench(unittest.TestCase):
                          "| a | 1 | 4 |" + rest)
 
     def measured_by_figures(self, name, **made):
-        """The folder into which it wrote; made: the benchmark's report, table and picture in the cache."""
+        """The folder into which it wrote; made: the benchmark's report and table in the cache."""
         figures = script("figures")
         out, cache, part = self.folder / "out", self.folder / "cache", figures.PARTS[name]
         (out / "docs").mkdir(parents=True)
         (out / figures.RESULTS).write_text((harness.ROOT / figures.RESULTS).read_text())
-        for file, key in ((part.table, "table"), (part.picture and part.picture[0], "picture")):
-            if file:
-                (cache / file).parent.mkdir(parents=True, exist_ok=True)
-                (cache / file).write_text(made[key])
+        if part.table:
+            (cache / part.table).parent.mkdir(parents=True, exist_ok=True)
+            (cache / part.table).write_text(made["table"])
         options = types.SimpleNamespace(out=out, edged=pathlib.Path(__file__), quick=False, jobs=1, caveats="*Not committed.*\n\n")
         with unittest.mock.patch.object(figures, "run", return_value=made.get("report", "")) as run:
             figures.measure(options, name, {"EDGED_CACHE": str(cache)})
         return figures, out, run.call_args.args[0]
 
-    def test_figures_puts_a_table_into_the_page_and_all_of_it_into_the_log(self):
+    def test_figures_puts_a_table_into_the_page_and_all_of_it_beside_the_others(self):
         report = "# T\n\nedged 1 (abc), 1 May 2026, `x`: y\n\n| format | read | written |\n| --- | ---: | ---: |\n| bag | 1 | 2 |\n"
         figures, out, command = self.measured_by_figures("reading", report=report)
         self.assertEqual(command, ("bench/reading",))
@@ -246,12 +245,11 @@ class Bench(unittest.TestCase):
         self.assertIn("<!-- figures: reading -->\n\n*Not committed.*\n\nedged 1 (abc), 1 May 2026, `x`\n\n| format | written |\n"
                       "| --- | ---: |\n| bag | 2 |\n\n<!-- end: reading -->", (out / figures.RESULTS).read_text())
 
-    def test_figures_puts_the_ablation_into_the_log_with_its_picture(self):
-        figures, out, command = self.measured_by_figures("ablation-filters", table="# Ablation\n\n| new |\n", picture="picture")
+    def test_figures_keeps_the_ablation_off_the_page(self):
+        figures, out, command = self.measured_by_figures("ablation-filters", table="# Ablation\n\n| new |\n")
         self.assertIn("enhancement", command)
         self.assertEqual((out / figures.TABLES / "ablation-filters.md").read_text(), "# Ablation\n\n*Not committed.*\n\n| new |\n")
         self.assertEqual((out / figures.RESULTS).read_text(), (harness.ROOT / figures.RESULTS).read_text())
-        self.assertEqual((out / "docs/images/ablation_filters.png").read_text(), "picture")
 
     def test_figures_refuses_a_program_that_is_not_what_is_committed(self):
         figures = script("figures")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the pages promise: docs/demands.md holds, commands on any page have flags that exist, messages in docs/faq.md are
+"""What the pages promise: commands on any page have flags that exist, messages in docs/faq.md are
 those of the source, options that messages name exist, each design decision has a page with links that exist,
 ARCHITECTURE.md stays a map.
 Usage: EDGED=path/to/edged docs_test.py. Decisions and Architecture never start it."""
@@ -9,54 +9,12 @@ import functools
 import pathlib
 import re
 import shlex
-import subprocess
-import sys
 import unittest
 
-from program import WithFolder, edged
+from program import edged
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DECISIONS = ROOT / "docs/decisions"
-
-
-def demands(*args):
-    return subprocess.run([sys.executable, ROOT / "scripts/demands", *map(str, args)], capture_output=True, text=True,
-                          check=False)
-
-
-class Demands(WithFolder):
-    def page(self, *rows, first=""):
-        page = self.folder / "page.md"
-        page.write_text("\n".join([f"```bash\n{first}\n```", "| | demand | met | by | try it |", "|---|---|---|---|---|", *rows]))
-        return page
-
-    def test_all_that_the_page_calls_met_is(self):
-        done = demands()
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertEqual(len(done.stdout.splitlines()), 26, done.stdout)
-        self.assertIn(" 0 FAILED", done.stdout)
-
-    def test_what_fails_and_what_is_missing_is_said(self):
-        page = self.page("| 1 | works | yes | | `test -e made` `edged --version` |",
-                         "| 2 | fails | yes | | `edged --version` `edged info nothing` |",
-                         "| 3 | has no file | partly | [this](nothing.md) | `true` |",
-                         "| 4 | is missing | not met | nobody did it | `false` |", first="touch made")
-        done = demands("--page", page)
-        self.assertEqual(done.returncode, 1, done.stderr)
-        lines = done.stdout.splitlines()
-        for line, words in zip(lines, (("1  ok",), ("2  FAILED", "edged info nothing: exit code 3", "nothing"),
-                                       ("3  FAILED", "nothing.md: there is no such file"), ("4  not met",),
-                                       ("1 ok, 2 FAILED, 1 not met",))):
-            for word in words:
-                self.assertIn(word, line)
-        self.assertEqual(demands("--page", page, "--only", 1, 4).returncode, 0)
-
-    def test_a_page_that_cannot_be_read_is_refused(self):
-        for row, words in (("| 1 | x | maybe | | `true` |", "'maybe'"), ("| 2 | x | yes | | `true` |", "numbered"),
-                           ("| 1 | x | yes | words | words |", "no command and no file")):
-            self.assert_refused(demands("--page", self.page(row)), words, code=2)
-        self.assert_refused(demands("--page", self.page("| 1 | x | yes | | `true` |", first="false")), "all commands need",
-                            code=2)
 
 
 def commands_of(page):

@@ -127,7 +127,7 @@ TEST(EventsAndFramesOfTwoLenses, ShareLandmarksAndStartAtOnce) {
   const Timestamp both_from = apart.steps.front().t + duration_from_seconds(seconds_to_good(apart));
   std::erase_if(shared.steps, [&](const Step& step) { return step.t < both_from; });
   error_of(flight, apart, "apart");
-  // Here more than apart (2.5 mm), from an error of scale of 0.7 %; less in most flights (bench/log/stereo.md).
+  // Here more than apart (2.5 mm), from an error of scale of 0.7 %; less in most flights.
   EXPECT_LT(error_of(flight, shared, "shared, as long as"), 0.005);
   for (const Step& step : fly(flight, Mode::Fused, "events,frames").steps)
     ASSERT_EQ(shared_features(step, "events", "frames"), 0U) << "one lens gives no depth";
