@@ -10,7 +10,7 @@
 #include "edged/map/keyframe_map.hpp"
 #include "edged/map/map_filter.hpp"
 #include "edged/map/odom_to_map.hpp"
-#include "edged/map/trajectory_smoother.hpp"
+#include "edged/map/trajectory/trajectory_smoother.hpp"
 #include "memory_use.hpp"
 
 namespace edged {

@@ -10,7 +10,7 @@
 #include "edged/autopilot/arrival_clock.hpp"
 #include "edged/autopilot/mavlink_output.hpp"
 #include "edged/core/check.hpp"
-#include "edged/pipeline/state_prediction.hpp"
+#include "edged/pipeline/localization/state_prediction.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {

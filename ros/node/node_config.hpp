@@ -8,7 +8,7 @@
 #include "edged/autopilot/autopilot_config.hpp"
 #include "edged/io/sensor_head.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/sequencer.hpp"
+#include "edged/pipeline/input/sequencer.hpp"
 
 namespace edged::node {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "edged/frontend/patch.hpp"
-#include "edged/frontend/patch_outline.hpp"
+#include "edged/frontend/patches/patch.hpp"
+#include "edged/frontend/patches/patch_outline.hpp"
 #include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"

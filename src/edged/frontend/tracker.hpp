@@ -16,7 +16,7 @@
 #include "edged/frontend/keyframe_policy.hpp"
 #include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
-#include "edged/frontend/templates.hpp"
+#include "edged/frontend/patches/reference_patches.hpp"
 #include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "edged/final_trajectory.hpp"
-#include "edged/frontend/patch.hpp"
+#include "edged/frontend/patches/patch.hpp"
 #include "edged/map/map_errors.hpp"
-#include "edged/map/place.hpp"
-#include "edged/map/place_index.hpp"
+#include "edged/map/places/place.hpp"
+#include "edged/map/places/place_index.hpp"
 #include "edged/options/map.hpp"
 #include "edged/rig.hpp"
 #include "edged/se3.hpp"

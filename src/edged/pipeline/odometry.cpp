@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "edged/pipeline/intake.hpp"
+#include "edged/pipeline/input/measurement_validator.hpp"
+#include "edged/pipeline/input/packetizer.hpp"
+#include "edged/pipeline/localization/state_prediction.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
-#include "edged/pipeline/packetizer.hpp"
-#include "edged/pipeline/state_prediction.hpp"
 
 namespace edged {
 

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "edged/core/check.hpp"
+#include "edged/pipeline/input/packetizer.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/odometry_test_support.hpp"
 #include "edged/pipeline/packet_odometry.hpp"
-#include "edged/pipeline/packetizer.hpp"
 
 namespace edged {
 namespace {

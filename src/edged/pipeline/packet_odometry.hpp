@@ -5,9 +5,9 @@
 
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"
-#include "edged/pipeline/localization.hpp"
-#include "edged/pipeline/packet.hpp"
-#include "edged/pipeline/vision.hpp"
+#include "edged/pipeline/input/packet.hpp"
+#include "edged/pipeline/localization/localization.hpp"
+#include "edged/pipeline/vision/vision.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
 #include "edged/timing.hpp"

@@ -9,8 +9,8 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
+#include "edged/pipeline/input/packetizer.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "edged/pipeline/packetizer.hpp"
 
 namespace edged {
 namespace {

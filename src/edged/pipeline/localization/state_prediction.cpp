@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/localization/state_prediction.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/imu/preintegration.hpp"
+
+namespace edged {
+namespace {
+
+constexpr Duration kKept = std::chrono::seconds(20);
+constexpr Duration kBack = std::chrono::seconds(1);
+constexpr Duration kLongestPrediction =
+    std::chrono::seconds(1);  // longest prediction: dead reckoning soon drifts by metres
+
+/// The state at the last sample, propagated from `start` at the first one.
+OdomState propagated(const OdomState& start, std::span<const ImuSample> samples) {
+  return propagate_all(start, samples).back();
+}
+
+/// The IMU only needs a frame with z up, so M can replace O while the map does not change T_M_O.
+OdomState as_odometry(const NavState& s) { return {s.t, s.T_W_B, s.v_W, s.bias_gyro, s.bias_accel}; }
+NavState in_map(const OdomState& s) { return {s.t, s.T_O_B, s.v_O, s.bias_gyro, s.bias_accel}; }
+
+}  // namespace
+
+void StatePrediction::add(const ImuSample& sample) {
+  const std::lock_guard lock(mutex_);
+  if (!is_plausible(sample.t) || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+  const Duration ahead = imu_.empty() ? Duration(0) : sample.t - imu_.back().t;
+  if (ahead > kKept || ahead < -kBack) {  // another clock, or a damaged stamp
+    imu_.clear();
+    states_.clear();
+  }
+  if (!imu_.empty() && sample.t <= imu_.back().t) return;
+  imu_.push_back(sample);
+  if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
+  if (!states_.empty() && sample.t - states_.front().t > kLongestPrediction) states_.clear();
+  if (sample.t - imu_.front().t <= 2 * kKept) return;
+  const auto keep = std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t);
+  imu_.erase(imu_.begin(), keep);
+}
+
+void StatePrediction::correct(const std::optional<NavState>& estimate) {
+  const std::lock_guard lock(mutex_);
+  states_.clear();
+  if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
+  if (imu_.back().t - estimate->t > kLongestPrediction) return;
+  imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
+  states_ = propagate_all(as_odometry(*estimate), imu_);
+}
+
+std::optional<NavState> StatePrediction::newest() const {
+  const std::lock_guard lock(mutex_);
+  return states_.empty() ? std::nullopt : std::optional(in_map(states_.back()));
+}
+
+std::optional<NavState> StatePrediction::at(Timestamp t) const {
+  const std::lock_guard lock(mutex_);
+  if (states_.empty() || t < states_.front().t || t > states_.back().t) return std::nullopt;
+  const auto before = std::prev(std::ranges::upper_bound(states_, t, {}, &OdomState::t));
+  const auto first = static_cast<std::size_t>(before - states_.begin());
+  return in_map(propagated(*before, slice_imu(std::span(imu_).subspan(first), before->t, t)));
+}
+
+}  // namespace edged

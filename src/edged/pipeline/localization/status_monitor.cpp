@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/localization/status_monitor.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kMorePatience = 1.5;
+constexpr double kMostBiasChange = 3.0;  // [sigma]; up to 2.1 without dynamic objects (docs/decisions/023)
+
+}  // namespace
+
+void StatusConfig::visit(ConfigFields& fields) {
+  fields.add("degraded_after_s", degraded_after_s,
+             {"s", 0.05, 60, "The status is Degraded after this time without landmarks."});
+  fields.add("lost_after_s", lost_after_s, {"s", 0.1, 600, "The status is Lost after this time without landmarks."});
+  fields.add("min_landmarks", min_landmarks, {"", 3, 100, "A Good pose needs this many landmarks in view."});
+  fields.add("degraded_strain", degraded_strain,
+             {"sigma", 0.01, 1000,
+              "The status is Degraded when the IMU residuals of the window exceed this: cameras and IMU disagree."});
+  fields.add(
+      "lost_strain", lost_strain,
+      {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
+}
+
+void StatusJudge::lose(std::string reason) {
+  reason_ = std::move(reason);
+  contradicted_ = false;
+}
+
+/// Of the IMU by the cameras, where it is too large to go on; empty else.
+std::string StatusJudge::contradiction(double imu_strain, double bias_change) {
+  if (const double most = patience_ * config_.lost_strain; imu_strain > most) {
+    patience_ *= kMorePatience;
+    return fmt::format(
+        "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
+        "the IMU's noise set too low)",
+        imu_strain, most);
+  }
+  if (bias_change <= kMostBiasChange) return "";
+  return fmt::format(
+      "the cameras contradict the IMU, whose biases would have changed ({:.1f} of {:.1f} sigma; most features are on "
+      "dynamic objects, or the calibration is wrong)",
+      bias_change, kMostBiasChange);
+}
+
+TrackingStatus StatusJudge::judge(const EstimatorResult& result, double bias_change, bool started, Timestamp t) {
+  if (!started) {
+    last_supported_.reset();
+    last_velocity_.reset();
+    return ever_started_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
+  }
+  ever_started_ = true;
+  if (result.standstill || result.landmarks_seen >= config_.min_landmarks || !last_supported_) last_supported_ = t;
+  if (result.velocity_observed) last_velocity_ = t;
+  alone_s_ = to_seconds(t - *last_supported_);
+  const double drifting_s = last_velocity_ ? std::min(alone_s_, to_seconds(t - *last_velocity_)) : alone_s_;
+  reason_ = result.plausible ? contradiction(result.imu_strain, bias_change) : "the solution has diverged";
+  contradicted_ = !reason_.empty();
+  vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
+  if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s_);
+  if (!reason_.empty()) return TrackingStatus::Lost;
+  const bool doubtful = result.provisional || alone_s_ > config_.degraded_after_s ||
+                        result.imu_strain > patience_ * config_.degraded_strain;
+  return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
+}
+
+}  // namespace edged

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Connects the odometry to the map: appearance of its keyframes, map matches, relocalization, and keyframes that leave
+// the window for the map.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "edged/core/odom_state.hpp"
+#include "edged/final_trajectory.hpp"
+#include "edged/keyframe_record.hpp"
+#include "edged/map/keyframe_map.hpp"
+#include "edged/map/map_filter.hpp"
+#include "edged/map/odom_to_map.hpp"
+#include "edged/map/saved_map.hpp"
+#include "edged/map/trajectory/trajectory_smoother.hpp"
+#include "edged/pipeline/mapping/loop_closer.hpp"
+#include "edged/pipeline/mapping/map_search.hpp"
+#include "edged/pipeline/vision/tracked_image.hpp"
+#include "edged/step.hpp"
+
+namespace edged {
+
+class Mapper {
+ public:
+  /// lost_after_s: StatusConfig's. For this time the last estimate may have been without landmarks.
+  Mapper(const MapConfig& config, double lost_after_s);
+
+  /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
+  void restart(const SE3& T_new_old, const OdomState& now);
+  /// O continues, but the rotation until now is unknown: its pose in M is uncertain, as after a start.
+  void doubt(const OdomState& now);
+  /// A new time begins: the map is discarded, unless it never changes, and the body continues from its pose.
+  void begin_time();
+  /// The odometry has reached `now`; at_rest: it is known to stand still.
+  void predict(const OdomState& now, bool at_rest = false);
+  /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
+  /// by place recognition: true when it has just been relocalized.
+  bool localize(Timestamp t, std::span<const PosedImage> images);
+  /// The packet has become a keyframe, with these images.
+  void keyframe(Timestamp t, std::span<const PosedImage> images);
+  /// A keyframe has left the window: kept if it is worth it.
+  void take(const KeyframeRecord& record);
+
+  /// That pose of the odometry has been published.
+  void note(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
+
+  /// Time of dead reckoning at the newest start [s]. It bounds the result of relocalization.
+  double dead_reckoning_s() const { return dead_reckoning_s_; }
+
+  const OdomToMap& odom_to_map() const { return odom_to_map_; }
+  /// The map matches in the images of that instant.
+  std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
+  /// By the images of that instant.
+  std::optional<LoopClosure> loop_closure(Timestamp t) const {
+    return closed_at_ == t ? std::optional(loop_closure_) : std::nullopt;
+  }
+  /// In M.
+  FinalTrajectory final_trajectory() const;
+
+  /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
+  void load(const SavedMap& map);
+  bool started() const { return !record_.empty(); }
+  /// All but the cameras. Nothing while awaiting relocalization in a loaded map, unless that never changes: keyframes
+  /// of this run are in another frame than that.
+  std::optional<SavedMap> save() const;
+  bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
+  /// With localize_only: the body has been relocalized in the loaded map, and no loss has followed.
+  bool localized() const { return !searching_ && !unlocated_before_ && !map_.keyframes().empty(); }
+  /// Since the last map match or rest [s].
+  double unmatched_s() const { return to_seconds(predicted_ - matched_); }
+
+ private:
+  /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
+  /// it.
+  Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
+  void begin_start(const OdomState& now);
+  bool update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
+              std::span<const PosedImage> images);
+  std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
+  bool recognise(Timestamp t, std::span<const PosedImage> images);
+  bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made);
+  bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
+  bool close_loop(Timestamp t, std::span<const PosedImage> images);
+  std::optional<TrajectorySmoother::Closed> closed() const;
+  double covered_share(std::span<const PosedImage> images) const;
+  void remove_keyframe(std::size_t keyframe);
+
+  MapConfig config_;
+  double lost_after_s_;
+  KeyframeMap map_;
+  MapFilter filter_;
+  std::optional<SavedMap> fixed_;  ///< with localize_only: the covariance as loaded; the filter's may have other terms
+  TrajectorySmoother record_;
+  OdomToMap odom_to_map_;
+  std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
+  std::vector<MapMatch> found_;        ///< in the newest images that were matched
+  std::optional<Timestamp> looked_at_;
+  Timestamp predicted_;            ///< newest pose of the odometry
+  Timestamp matched_;              ///< the last map match or rest
+  Timestamp started_;              ///< the estimator's newest start
+  SE3 T_M_O_guess_;                ///< there, by dead reckoning
+  double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes
+  bool searching_ = false;         ///< since then nothing older has been matched
+  /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
+  std::optional<Timestamp> unlocated_before_;
+  double path_m_ = 0.0;  ///< length of the odometry's path in motion
+  Eigen::Vector3d p_O_B_ = Eigen::Vector3d::Zero();
+  LoopCloser loops_;
+  std::optional<Timestamp> closed_at_;  ///< of the last loop
+  LoopClosure loop_closure_;            ///< then
+  std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
+};
+
+}  // namespace edged

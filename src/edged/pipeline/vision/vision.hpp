@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Vision: from a packet and the body's predicted motion to images and observations of features. Independent of the
+// estimator.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "edged/frontend/low_light.hpp"
+#include "edged/options.hpp"
+#include "edged/pipeline/input/packet.hpp"
+#include "edged/pipeline/localization/imu_propagator.hpp"
+#include "edged/pipeline/vision/camera_tracker.hpp"
+#include "edged/pipeline/vision/event_view.hpp"
+#include "edged/pipeline/vision/scene_depth.hpp"
+#include "edged/pipeline/vision/stereo.hpp"
+#include "edged/pipeline/vision/tracked_image.hpp"
+#include "edged/rig.hpp"
+#include "edged/step.hpp"
+#include "edged/timing.hpp"
+
+namespace edged {
+
+struct VisionInput {
+  const Packet& packet;
+  const BodyMotion& body;    ///< as predicted, up to the packet
+  bool gyro_trusted = true;  ///< since the packet before
+};
+
+struct VisionOutput {
+  double scene_depth = 0.0;                      ///< z-depth [m] used by the warp
+  std::vector<EventImage> event_images;          ///< one per event camera, empty if there were too few events
+  std::vector<TrackedImage> images;              ///< one per camera of the run
+  std::vector<CameraObservations> observations;  ///< of the cameras with an image in the packet
+  bool keyframe = false;                         ///< the packet should become a keyframe, and vision has made it one
+  bool events_quiet = false;                     ///< the view of every event camera is static
+  std::optional<RegionDepth> depth;              ///< for Eq. 5
+};
+
+/// z-depths of landmarks in each camera at the newest state [m].
+using LandmarkDepths = std::vector<std::map<FeatureId, double>>;
+
+/// The feedback of localization.
+struct VisionCorrection {
+  std::vector<FeatureId> outliers;          ///< outlier tracks, which should end
+  std::optional<LandmarkDepths> landmarks;  ///< nothing without an estimate; then all below is unset, too
+  std::vector<RigCamera> cameras = {};      ///< as calibrated
+  std::optional<SE3> T_new_old = {};        ///< from the old odometry frame to the new one, where the estimator started
+  bool ended = false;                       ///< the estimate has ended with this packet
+  bool provisional = true;                  ///< there is no estimate, or its scale is not certain yet
+};
+
+/// One object for all cameras of a run. A cycle is process, then correct. Deterministic, except with a depth network in
+/// a thread of its own.
+class Vision {
+ public:
+  /// cameras: those of the run, event cameras first, without time offsets: packets have none; config: validated.
+  Vision(const Rig& cameras, const OdometryConfig& config, Inference inference, StageTimings& timings);
+
+  VisionOutput process(const VisionInput& input);
+  /// body: as estimated, at the time of the packet.
+  void correct(const VisionCorrection& correction, const BodyMotion& body);
+  /// A clock was set back and a new time begins: tracks end.
+  void begin_time();
+
+  /// For observers; output: of that packet.
+  std::vector<CameraStep> describe(Packet packet, const VisionOutput& output) const;
+
+ private:
+  /// One depth for all cameras: that of the first event camera, or of the first camera without one, as a depth network
+  /// has one camera only.
+  SceneDepth fresh_depth() const {
+    return {config_.depth, rig_.cameras.front(), config_.estimator.depth_factor.enabled, inference_};
+  }
+  void make_channels();
+  double measure_depth(const Packet& packet);
+  std::vector<EventImage> render(const VisionInput& input, double scene_depth);
+  std::optional<DepthGrid> event_depths(std::size_t camera, const BodyMotion& body, double scene_depth) const;
+  std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const;
+  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> event_images);
+  void track(const ChannelView& view, const VisionInput& input, double scene_depth);
+  void reject(std::span<const ChannelView> views, const BodyMotion& body);
+  bool is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const;
+  void share(const ChannelView& from, const ChannelView& to, const BodyMotion& body);
+  std::optional<double> landmark_depth(const Channel& channel, FeatureId id) const;
+  void mark_keyframe(const VisionInput& input, std::span<ChannelView> views, double scene_depth);
+  void expect_events(std::span<ChannelView> views, const BodyMotion& body, double scene_depth) const;
+  bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
+  double carried_by_frames() const;
+  bool frames_at_work(Timestamp t) const;
+  bool frames_carry(Timestamp t) const;
+  int features_wanted(const Channel& channel, Timestamp t) const;
+  bool is_quiet(const Packet& packet, std::span<const EventImage> event_images) const;
+  std::vector<TrackedImage> images_of(std::span<const ChannelView> views) const;
+
+  OdometryConfig config_;
+  Inference inference_;
+  bool gyro_saturated_ = false;  ///< since the last keyframe
+  bool provisional_ = true;      ///< by the last correction
+  Rig rig_;                      ///< with online calibration
+  StageTimings* timings_;
+  std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
+  std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
+  std::vector<Channel> channels_;              ///< as in rig_
+  SceneDepth depth_;
+  FeatureId next_feature_ = 1;
+  std::optional<Timestamp> last_keyframe_, last_frame_;
+  std::optional<LandmarkDepths> landmarks_;  ///< by the last correction
+};
+
+}  // namespace edged
