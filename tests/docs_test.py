@@ -122,7 +122,7 @@ class Decisions(unittest.TestCase):
                 self.assertLessEqual(len(text.splitlines()), 40)
 
     def test_the_index_has_each_page_once_by_its_title(self):
-        rows = re.findall(r"^\| (\d+) \| \[(.*)\]\((.*)\) \| \S.* \|$", (DECISIONS / "README.md").read_text(), re.MULTILINE)
+        rows = re.findall(r"^- (\d+) \[(.*)\]\((.*)\)$", (DECISIONS / "README.md").read_text(), re.MULTILINE)
         self.assertEqual(rows, [(page.name[:3], page.read_text().splitlines()[0].split(". ", 1)[1], page.name)
                                 for page in self.PAGES])
 
@@ -133,9 +133,9 @@ class Decisions(unittest.TestCase):
 
 
 class Architecture(unittest.TestCase):
-    def test_is_a_map_of_150_lines_without_commits(self):
+    def test_is_a_map_of_160_lines_without_commits(self):
         text = (ROOT / "ARCHITECTURE.md").read_text()
-        self.assertLessEqual(len(text.splitlines()), 150)
+        self.assertLessEqual(len(text.splitlines()), 160)
         self.assertNotRegex(text, r"\b(?=[a-f]*\d)[0-9a-f]{7,40}\b")
 
 
