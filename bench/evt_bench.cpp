@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edged/io/evt_test_support.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 
 namespace edged {
 namespace {

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "dds/subscription.hpp"
-#include "edged/io/evt_encoder.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
 #include "edged/io/ros/event_packets.hpp"
 #include "edged/io/ros/wire_writer.hpp"
 

@@ -9,8 +9,9 @@ The table is the rule: `| module | may use | public | holds |`, one row a module
 above it, so there are no cycles of modules; modules of the method lie in src/edged, and may use none of the toolbox's, in
 toolbox/edged, which may be missing as a whole. `public` names the headers that are the module's in include/edged, or in
 toolbox/include/edged where it is of the toolbox. A component is a path without its extension, module/x: x.hpp, a public one
-too, and x.cpp are one, x_test.cpp is of none. A
-family is a folder within io: families do not include one another. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
+too, and x.cpp are one, x_test.cpp is of none. Folders within io are archive, parse and core, each of which may include
+those before it, and families of formats, which may include these three but not one another; loose sources of io join the
+families. Usage: check_layers.py [ROOT]; prints every violation, a cycle as `a -> b -> a`, and exits 1 if there is one.
 """
 import graphlib
 import itertools
@@ -26,7 +27,8 @@ ANY_INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
 PUBLIC_INCLUDE = re.compile(r"\w+|Eigen/\w+|opencv2/core(/[\w/]+)?\.hpp")
 TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)\b[^;()]*\{")  # of the namespace: nested ones are indented
 LINKS = re.compile(r"\b(TEST_DEPENDS|DEPENDS)\b|\bedged::(\w+)|^\s*(SOURCES|TESTS)\b")
-FAMILIES = re.compile(r"edged/io/(\w+)/")  # folders of formats
+IO_FOLDER = re.compile(r"edged/io/(\w+)/")
+IO_SHARED = ("archive", "parse", "core")  # folders of io that families share, bottom to top; its other folders are families
 
 
 def read_table(architecture):
@@ -137,15 +139,16 @@ def check_cycles(root, folders, public):
 
 
 def check_families(root, folders):
-    """A family of formats includes no other, and no header beside the families includes any; sources there join them."""
+    """Folders of io: a shared one includes those below it, a family the shared ones, a loose header none of a family."""
     for file in sorted(folders["io"].rglob("*.[ch]pp")) if "io" in folders else ():
-        own = FAMILIES.search(file.relative_to(root).as_posix())
-        if not own and file.suffix == ".cpp":
+        own = (match := IO_FOLDER.search(file.relative_to(root).as_posix())) and match.group(1)
+        if not own and file.suffix == ".cpp" or file.name.endswith(("_test.cpp", "_test_support.hpp")) and own in IO_SHARED:
             continue
+        below = IO_SHARED[:IO_SHARED.index(own)] if own in IO_SHARED else IO_SHARED
         for number, line in enumerate(file.read_text().splitlines(), 1):
-            other = (include := INCLUDE.match(line)) and FAMILIES.match(include.group(1))
-            if other and (not own or own.group(1) != other.group(1)):
-                where = f"io/{own.group(1)}" if own else "a header of io"
+            other = (include := INCLUDE.match(line)) and IO_FOLDER.match(include.group(1))
+            if other and other.group(1) not in (own, *below):
+                where = f"io/{own}" if own else "a header of io"
                 yield f"{file.relative_to(root)}:{number}: {where} may not include io/{other.group(1)}"
 
 

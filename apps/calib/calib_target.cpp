@@ -24,7 +24,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/target/print.hpp"
 
 namespace edged {

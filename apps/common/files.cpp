@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
-#include "edged/io/image_codec.hpp"
+#include "edged/io/parse/image_codec.hpp"
 
 namespace edged {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "edged/io/image_codec.hpp"
+#include "edged/io/parse/image_codec.hpp"
 
 namespace edged {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/log.hpp"
-#include "edged/io/run_cameras.hpp"
+#include "edged/io/core/run_cameras.hpp"
 
 namespace edged {
 

@@ -29,7 +29,7 @@
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
 #include "edged/events/warp.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/odometry.hpp"
 
 namespace edged {

@@ -11,7 +11,7 @@
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {

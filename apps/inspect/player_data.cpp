@@ -8,7 +8,7 @@
 
 #include "common/evenly.hpp"
 #include "common/pictures.hpp"
-#include "edged/io/image_codec.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "report/report_rows.hpp"
 #include "run/run_album.hpp"
 

@@ -19,7 +19,7 @@
 #include "edged/core/check.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {

@@ -15,7 +15,7 @@
 #include "common/step_facts.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/external_sensor.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "edged/core/check.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

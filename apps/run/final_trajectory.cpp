@@ -5,7 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "common/files.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "report/states_table.hpp"
 
 namespace edged {

@@ -12,7 +12,7 @@
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/zip_writer.hpp"
+#include "edged/io/archive/zip_writer.hpp"
 #include "program.hpp"
 #include "report/states_table.hpp"
 #include "run/run_folder.hpp"

@@ -9,7 +9,7 @@
 #include "common/files.hpp"
 #include "common/pictures.hpp"
 #include "edged/camera/output_frame.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "run/run_observer.hpp"
 #include "run/verdict.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "edged/camera/output_frame.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "edged/step.hpp"
 #include "run/run_statistics.hpp"
 

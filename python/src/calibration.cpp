@@ -5,7 +5,7 @@
 
 #include "bindings.hpp"
 #include "edged/camera/output_frame.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
 
 namespace edged::python {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "bindings.hpp"
 #include "edged/eval/evaluation_json.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 
 namespace edged::python {
 namespace {

@@ -9,7 +9,7 @@
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::python {

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/io/ros/sensor_messages.hpp"
-#include "edged/io/topic_choice.hpp"
 #include "edged/measurement.hpp"
 #include "node/transport.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "edged/io/evt_encoder.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
 #include "edged/io/ros/definitions.hpp"
 

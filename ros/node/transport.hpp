@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/io/ros/message_source.hpp"
-#include "edged/io/topic_choice.hpp"
 #include "edged/time.hpp"
 
 namespace edged::node {

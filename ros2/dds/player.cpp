@@ -9,9 +9,9 @@
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/io/evt_encoder.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/ros/wire_writer.hpp"
-#include "edged/io/text_parsing.hpp"
 #include "edged/live/live_clock.hpp"
 
 namespace edged::ros2 {

@@ -14,7 +14,7 @@
 
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/core/recording_writer.hpp"
 
 namespace edged::ros2 {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 
 struct ddsi_serdata;
 struct ddsi_sertype;

@@ -17,8 +17,8 @@
 
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/evt_encoder.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
 #include "edged/live/live_clock.hpp"
 #include "fast_peer.hpp"
 

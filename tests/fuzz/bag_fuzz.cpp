@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "edged/core/check.hpp"
-#include "edged/io/mcap_format.hpp"
+#include "edged/io/archive/mcap_format.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_format.hpp"
 

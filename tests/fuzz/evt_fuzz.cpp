@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "edged/io/evt.hpp"
+#include "edged/io/parse/evt.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edged;

@@ -12,7 +12,7 @@
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calib/mask.hpp"
 #include "edged/io/calib/plausibility.hpp"
-#include "edged/io/calibration_source.hpp"
+#include "edged/io/core/calibration_source.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

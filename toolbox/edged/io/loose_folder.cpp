@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 #include "edged/io/ros/bag_folder.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "edged/io/bytes.hpp"
-#include "edged/io/source_path.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/archive/source_path.hpp"
 
 namespace edged {
 

@@ -16,9 +16,10 @@
 #include "edged/io/aedat/aedat4.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
-#include "edged/io/bytes.hpp"
-#include "edged/io/calibration_source.hpp"
-#include "edged/io/dataset_folders.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/archive/zip_archive.hpp"
+#include "edged/io/core/calibration_source.hpp"
+#include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/hdf5/hdf5_dataset.hpp"
 #include "edged/io/loose_folder.hpp"
@@ -31,7 +32,6 @@
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"
-#include "edged/io/zip_archive.hpp"
 
 namespace edged {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "edged/io/calibration.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/test_support.hpp"
-#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "edged/io/calibration.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
 #include "edged/io/test_support.hpp"

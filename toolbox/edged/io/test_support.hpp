@@ -16,7 +16,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/test_data.hpp"
 #include "edged/dataset.hpp"
-#include "edged/io/image_codec.hpp"
+#include "edged/io/parse/image_codec.hpp"
 
 namespace edged {
 

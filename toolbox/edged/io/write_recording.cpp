@@ -13,13 +13,13 @@
 #include "edged/core/external_sensor.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
-#include "edged/io/camera_names.hpp"
-#include "edged/io/ecd_writer.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/hdf5/hdf5_writer.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
 #include "edged/io/ros/ros_writer.hpp"
+#include "edged/io/text/ecd_writer.hpp"
 #include "edged/io/text/event_csv.hpp"
-#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/core/recording_writer.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "edged/sim/flight.hpp"
 #include "edged/sim/random.hpp"
 

@@ -11,7 +11,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/test_data.hpp"
 #include "edged/imu/preintegration.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "edged/sim/imu_model.hpp"
 #include "edged/sim/motion.hpp"
 

@@ -12,7 +12,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
-#include "edged/io/streamed_dataset.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
 
 namespace edged {
 namespace {

@@ -8,8 +8,8 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
-#include "edged/io/streamed_dataset.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

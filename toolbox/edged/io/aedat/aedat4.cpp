@@ -10,9 +10,9 @@
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/aedat/flat_table.hpp"
-#include "edged/io/compression.hpp"
-#include "edged/io/geometry.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/archive/compression.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -3,7 +3,7 @@
 // AEDAT4 files of iniVation's DV: events, frames and IMU in compressed packets.
 #pragma once
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 #include "edged/io/recording.hpp"
 
 namespace edged {

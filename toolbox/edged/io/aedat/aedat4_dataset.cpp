@@ -10,10 +10,10 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/io/aedat/flat_table.hpp"
-#include "edged/io/camera_names.hpp"
-#include "edged/io/compression.hpp"
-#include "edged/io/geometry.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/archive/compression.hpp"
+#include "edged/io/core/camera_names.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "edged/io/aedat/aedat4_header.hpp"
-#include "edged/io/streamed_dataset.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
 
 namespace edged {
 

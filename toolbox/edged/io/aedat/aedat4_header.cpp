@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "edged/io/aedat/flat_table.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/bytes.hpp"
-#include "edged/io/topic_choice.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/core/topic_choice.hpp"
 
 namespace edged {
 

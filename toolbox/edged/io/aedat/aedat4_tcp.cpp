@@ -13,7 +13,7 @@
 #include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/aedat/tcp_connection.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace {

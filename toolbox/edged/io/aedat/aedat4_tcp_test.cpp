@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "edged/io/aedat/aedat4_writer.hpp"
-#include "edged/io/evt_test_support.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

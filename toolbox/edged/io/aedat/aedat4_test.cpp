@@ -10,8 +10,8 @@
 
 #include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/calibration.hpp"
-#include "edged/io/evt_test_support.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

@@ -15,7 +15,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_header.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/core/recording_writer.hpp"
 
 namespace edged {
 

@@ -9,8 +9,8 @@
 #include <array>
 
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

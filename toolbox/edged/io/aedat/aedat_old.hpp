@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 #include "edged/io/recording.hpp"
 
 namespace edged {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 
 namespace edged {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Coefficients padded with zeros as by OpenCV, in each format.
-#include "edged/io/distortion.hpp"
+#include "edged/io/parse/distortion.hpp"
 
 #include <gmock/gmock.h>
 #include <spdlog/fmt/ranges.h>

@@ -3,9 +3,9 @@
 // The calibrations in folders of the Event-Camera Dataset and of EuRoC.
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
-#include "edged/io/dataset_folders.hpp"
-#include "edged/io/distortion.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/core/dataset_folders.hpp"
+#include "edged/io/parse/distortion.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -7,8 +7,8 @@
 #include <charconv>
 
 #include "edged/core/check.hpp"
-#include "edged/io/image_file.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

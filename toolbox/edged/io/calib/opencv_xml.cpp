@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <string>
 
-#include "edged/io/bytes.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

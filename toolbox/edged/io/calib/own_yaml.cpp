@@ -9,7 +9,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calib/mask.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "edged/io/archive/source_path.hpp"
 #include "edged/io/sensor_head.hpp"
-#include "edged/io/source_path.hpp"
 
 namespace edged {
 

@@ -12,7 +12,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/calib/opencv_xml.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "edged/io/source_path.hpp"
+#include "edged/io/archive/source_path.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 
 namespace edged {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 
 namespace edged {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/io/camera_names.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
+#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "edged/core/check.hpp"
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/hdf5/ecf.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "edged/io/bytes.hpp"
+#include "edged/io/archive/bytes.hpp"
 
 namespace edged {
 

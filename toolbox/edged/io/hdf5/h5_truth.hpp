@@ -9,7 +9,7 @@
 
 #include "edged/dataset.hpp"
 #include "edged/io/hdf5/layouts.hpp"
-#include "edged/io/repairs.hpp"
+#include "edged/io/parse/repairs.hpp"
 
 namespace edged {
 

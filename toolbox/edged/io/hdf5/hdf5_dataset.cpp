@@ -10,12 +10,12 @@
 #include <span>
 
 #include "edged/core/check.hpp"
-#include "edged/io/camera_names.hpp"
+#include "edged/io/core/camera_names.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/hdf5/h5_cameras.hpp"
 #include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"
-#include "edged/io/streamed_dataset.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

@@ -7,9 +7,9 @@
 
 #include <random>
 
-#include "edged/io/evt_test_support.hpp"
 #include "edged/io/hdf5/h5_test_support.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 /// For the leak sanitizer: the library itself leaks a few hundred bytes with some damaged files.

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/core/recording_writer.hpp"
 
 namespace edged {
 

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "edged/io/evt_test_support.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "edged/io/hdf5/ecf.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

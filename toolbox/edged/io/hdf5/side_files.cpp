@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "edged/io/imu_lines.hpp"
-#include "edged/io/trajectory_io.hpp"
+#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;

@@ -11,10 +11,10 @@
 #include <map>
 
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/prophesee/raw_writer.hpp"
-#include "edged/io/streamed_dataset.hpp"
-#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

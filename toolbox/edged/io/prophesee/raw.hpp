@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "edged/io/bytes.hpp"
-#include "edged/io/evt.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/recording.hpp"
 
 namespace edged {

@@ -6,9 +6,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "edged/core/check.hpp"
-#include "edged/io/bytes.hpp"
-#include "edged/io/evt_encoder.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

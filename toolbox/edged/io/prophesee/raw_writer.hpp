@@ -3,7 +3,7 @@
 // Writes files of Prophesee cameras. Internal to io.
 #pragma once
 
-#include "edged/io/recording_writer.hpp"
+#include "edged/io/core/recording_writer.hpp"
 
 namespace edged {
 

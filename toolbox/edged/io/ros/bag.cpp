@@ -5,7 +5,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/ros/bag_format.hpp"
 
 namespace edged {

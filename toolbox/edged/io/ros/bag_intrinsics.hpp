@@ -5,9 +5,9 @@
 
 #include <optional>
 
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/sensor_head.hpp"
-#include "edged/io/topic_choice.hpp"
 
 namespace edged {
 

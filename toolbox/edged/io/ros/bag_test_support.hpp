@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/ros/bag_writer.hpp"
 #include "edged/io/ros/mcap_sink.hpp"
 #include "edged/io/ros/wire_writer.hpp"

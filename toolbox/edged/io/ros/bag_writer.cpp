@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/ros/bag_format.hpp"
 
 namespace edged {

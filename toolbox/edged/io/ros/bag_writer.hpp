@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/ros/message_sink.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "edged/io/repairs.hpp"
+#include "edged/io/parse/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 struct sqlite3;

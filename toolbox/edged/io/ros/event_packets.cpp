@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "edged/io/evt.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/ros/messages.hpp"
 
 namespace edged {

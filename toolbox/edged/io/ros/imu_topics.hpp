@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "edged/io/topic_choice.hpp"
+#include "edged/io/core/topic_choice.hpp"
 
 namespace edged {
 

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
-#include "edged/io/compression.hpp"
-#include "edged/io/mcap_format.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/archive/compression.hpp"
+#include "edged/io/archive/mcap_format.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

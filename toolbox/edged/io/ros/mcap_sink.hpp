@@ -3,7 +3,7 @@
 // Writes ROS 2 messages to an MCAP file.
 #pragma once
 
-#include "edged/io/mcap_writer.hpp"
+#include "edged/io/archive/mcap_writer.hpp"
 #include "edged/io/ros/message_sink.hpp"
 
 namespace edged {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/bytes.hpp"
-#include "edged/io/topic_choice.hpp"
+#include "edged/io/archive/bytes.hpp"
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/time.hpp"
 
 namespace edged {

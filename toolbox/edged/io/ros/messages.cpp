@@ -12,9 +12,9 @@
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
-#include "edged/io/distortion.hpp"
-#include "edged/io/image_codec.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/distortion.hpp"
+#include "edged/io/parse/image_codec.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {

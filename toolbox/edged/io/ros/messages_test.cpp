@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "edged/io/calibration.hpp"
-#include "edged/io/evt_encoder.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_encoder.hpp"
 #include "edged/io/ros/bag_test_support.hpp"
 
 namespace edged {

@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "edged/core/check.hpp"
-#include "edged/io/mcap_format.hpp"
+#include "edged/io/archive/mcap_format.hpp"
 #include "edged/io/ros/bag.hpp"
 #include "edged/io/ros/bag_folder.hpp"
 #include "edged/io/ros/bag_format.hpp"

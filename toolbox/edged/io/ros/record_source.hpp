@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "edged/io/repairs.hpp"
+#include "edged/io/parse/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/io/camera_names.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
+#include "edged/io/core/geometry.hpp"
 #include "edged/io/ros/bag_intrinsics.hpp"
 #include "edged/io/ros/open_messages.hpp"
 

@@ -5,13 +5,13 @@
 
 #include <array>
 
-#include "edged/io/imu_join.hpp"
+#include "edged/io/core/imu_join.hpp"
+#include "edged/io/core/streamed_dataset.hpp"
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/io/ros/imu_topics.hpp"
 #include "edged/io/ros/message_source.hpp"
 #include "edged/io/ros/sensor_messages.hpp"
-#include "edged/io/streamed_dataset.hpp"
-#include "edged/io/topic_choice.hpp"
 
 namespace edged {
 

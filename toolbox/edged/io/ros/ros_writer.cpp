@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/ros/bag_writer.hpp"
 #include "edged/io/ros/definitions.hpp"
 #include "edged/io/ros/mcap_sink.hpp"
 #include "edged/io/ros/wire_writer.hpp"
-#include "edged/io/text_parsing.hpp"
 
 namespace edged {
 namespace {

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "edged/core/check.hpp"
-#include "edged/io/compression.hpp"
+#include "edged/io/archive/compression.hpp"
 
 namespace edged {
 namespace {

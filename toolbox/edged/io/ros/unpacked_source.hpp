@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "edged/io/repairs.hpp"
+#include "edged/io/parse/repairs.hpp"
 #include "edged/io/ros/message_source.hpp"
 
 namespace edged {

@@ -13,8 +13,8 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/dataset.hpp"
-#include "edged/io/stamped_lines.hpp"
-#include "edged/io/take_before.hpp"
+#include "edged/io/core/take_before.hpp"
+#include "edged/io/parse/stamped_lines.hpp"
 
 namespace edged {
 

@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration_source.hpp"
-#include "edged/io/camera_names.hpp"
-#include "edged/io/dataset_folders.hpp"
-#include "edged/io/geometry.hpp"
-#include "edged/io/imu_lines.hpp"
+#include "edged/io/core/calibration_source.hpp"
+#include "edged/io/core/camera_names.hpp"
+#include "edged/io/core/dataset_folders.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/text_dataset.hpp"
-#include "edged/io/trajectory_io.hpp"
 
 namespace edged {
 namespace {

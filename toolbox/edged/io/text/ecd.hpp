@@ -3,8 +3,8 @@
 // The text folders of the Event-Camera Dataset and of UZH-FPV.
 #pragma once
 
+#include "edged/io/archive/source_path.hpp"
 #include "edged/io/recording.hpp"
-#include "edged/io/source_path.hpp"
 
 namespace edged {
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calibration_source.hpp"
-#include "edged/io/dataset_folders.hpp"
-#include "edged/io/imu_lines.hpp"
+#include "edged/io/core/calibration_source.hpp"
+#include "edged/io/core/dataset_folders.hpp"
+#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 #include "edged/io/text/text_dataset.hpp"
-#include "edged/io/trajectory_io.hpp"
 
 namespace edged {
 namespace {

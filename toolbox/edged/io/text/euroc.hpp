@@ -3,8 +3,8 @@
 // The ASL folders of EuRoC and TUM-VI.
 #pragma once
 
+#include "edged/io/archive/source_path.hpp"
 #include "edged/io/recording.hpp"
-#include "edged/io/source_path.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
 #include "edged/io/text/text_dataset.hpp"
 
 namespace edged {

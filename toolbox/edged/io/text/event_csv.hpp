@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "edged/io/core/recording_writer.hpp"
 #include "edged/io/recording.hpp"
-#include "edged/io/recording_writer.hpp"
 #include "edged/io/text/event_text.hpp"
 
 namespace edged {

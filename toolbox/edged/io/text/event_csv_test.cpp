@@ -7,8 +7,8 @@
 
 #include <random>
 
-#include "edged/io/evt_test_support.hpp"
 #include "edged/io/open_recording.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
-#include "edged/io/geometry.hpp"
+#include "edged/io/core/geometry.hpp"
+#include "edged/io/parse/text_columns.hpp"
 #include "edged/io/text/event_csv.hpp"
-#include "edged/io/text_columns.hpp"
 
 namespace edged {
 namespace {

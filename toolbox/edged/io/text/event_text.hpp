@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/io/ahead_gate.hpp"
-#include "edged/io/repairs.hpp"
-#include "edged/io/text_parsing.hpp"
+#include "edged/io/parse/ahead_gate.hpp"
+#include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 
 #include "edged/core/external_sensor.hpp"
 #include "edged/dataset.hpp"
-#include "edged/io/source_path.hpp"
+#include "edged/io/archive/source_path.hpp"
 
 namespace edged {
 

@@ -10,9 +10,9 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/io/ecd_writer.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
+#include "edged/io/text/ecd_writer.hpp"
 #include "edged/io/write_recording.hpp"
 
 namespace edged {

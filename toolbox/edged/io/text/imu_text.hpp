@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "edged/dataset.hpp"
-#include "edged/io/imu_lines.hpp"
+#include "edged/io/parse/imu_lines.hpp"
 
 namespace edged {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/io/merger.hpp"
+#include "edged/io/core/merger.hpp"
 
 namespace edged {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "edged/dataset.hpp"
-#include "edged/io/image_file.hpp"
-#include "edged/io/stamped_lines.hpp"
+#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/stamped_lines.hpp"
 #include "edged/io/text/event_text.hpp"
 
 namespace edged {

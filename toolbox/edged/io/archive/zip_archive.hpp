@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Zip archives as folders of files. Internal to SourcePath.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "edged/io/archive/byte_source.hpp"
+#include "edged/io/archive/bytes.hpp"
+
+struct zip;
+
+namespace edged {
+
+/// Not thread-safe.
+class ZipArchive {
+ public:
+  /// Reads the list of files. Throws InputError if it is damaged.
+  explicit ZipArchive(const std::filesystem::path& file);
+
+  const std::filesystem::path& file() const { return file_; }
+  bool is_file(const std::filesystem::path& path) const;
+  bool is_folder(const std::filesystem::path& path) const;
+  std::vector<std::string> names(const std::filesystem::path& folder) const;
+  /// The source may outlive this object. Throws InputError.
+  std::unique_ptr<ByteSource> open(const std::filesystem::path& path);
+
+ private:
+  std::filesystem::path file_;
+  std::shared_ptr<zip> zip_;
+  std::map<std::string, std::uint64_t> entries_;  ///< of files: path to index
+};
+
+/// The text of libzip for the number of an error.
+std::string zip_reason(int error);
+
+/// head: the first bytes of a file.
+bool is_zip(ByteSpan head);
+
+}  // namespace edged

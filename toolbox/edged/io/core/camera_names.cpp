@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/io/core/camera_names.hpp"
+
+#include <algorithm>
+
+#include "edged/core/check.hpp"
+#include "edged/io/parse/text_parsing.hpp"
+
+namespace edged {
+namespace {
+
+std::string stream_list(const DatasetInfo& info) {
+  std::string list;
+  for (const RecordedCamera& camera : recorded_cameras(info))
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name, kind_name(camera.modality));
+  return list;
+}
+
+std::string camera_list(const Rig& rig) {
+  std::string list;
+  for (const RigCamera& camera : rig.cameras)
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name, kind_name(camera.modality));
+  return list.empty() ? "none" : list;
+}
+
+[[noreturn]] void refuse(const Rig& rig, const DatasetInfo& info, Modality modality, const std::string& reason) {
+  const bool events = modality == Modality::Events;
+  const std::string& wanted = events ? info.event_camera : info.frame_camera;
+  throw InputError::format(
+      "{}: holds {}; rig '{}' has the cameras {}: {}; name the camera of the {} '{}' in the calibration (`edged calib "
+      "FILE --camera NAME={}:{} --out rig.yaml` renames it), or run with --mode {}",
+      info.name, stream_list(info), rig.name, camera_list(rig), reason, kind_name(modality), wanted,
+      kind_name(modality), wanted, events ? "frames" : "events");
+}
+
+/// The cameras beside the first must have the names of the rig: readers name them so where they can.
+void check_further_cameras(const Rig& rig, const DatasetInfo& info, Modality modality) {
+  for (const RecordedCamera& recorded : info.more_cameras) {
+    if (recorded.modality != modality) continue;
+    const auto named = std::ranges::find(rig.cameras, recorded.name, &RigCamera::name);
+    if (named == rig.cameras.end())
+      throw InputError::format(
+          "{}: holds {}; rig '{}' has the cameras {}: none is called '{}'; name it so in the calibration, or choose "
+          "others in the option cameras",
+          info.name, stream_list(info), rig.name, camera_list(rig), recorded.name);
+    if (named->modality != modality)
+      refuse(rig, info, modality, fmt::format("'{}' is not of {}", recorded.name, kind_name(modality)));
+  }
+}
+
+/// The words that tell cameras apart: "left", or the name of a camera.
+bool is_stream_of(const std::string& camera, const std::string& stream) {
+  const std::string name = lower_case(camera), text = lower_case(stream);
+  for (const char* word : {"left", "right", "front", "rear", "back"})
+    if (name.find(word) != std::string::npos) return text.find(word) != std::string::npos;
+  return text.find(name) != std::string::npos;
+}
+
+/// The camera of each stream by words, if there is exactly one for each.
+std::vector<std::string> named_by_words(const std::vector<std::string>& cameras,
+                                        const std::vector<std::string>& streams) {
+  std::vector<std::string> names;
+  for (const std::string& stream : streams) {
+    const auto fits = [&](const std::string& camera) { return is_stream_of(camera, stream); };
+    const auto first = std::ranges::find_if(cameras, fits);
+    if (first == cameras.end() || std::ranges::count_if(cameras, fits) > 1) return {};
+    if (std::ranges::find(names, *first) != names.end()) return {};
+    names.push_back(*first);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string kind_name(Modality modality) { return modality == Modality::Events ? "events" : "frames"; }
+
+std::vector<std::size_t> cameras_to_read(const std::vector<std::string>& names, const std::vector<std::string>& wanted,
+                                         bool all) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (all || std::ranges::find(wanted, names[i]) != wanted.end()) places.push_back(i);
+  if (places.empty() && !names.empty()) places.push_back(0);
+  return places;
+}
+
+std::string usual_camera_name(Modality modality, std::size_t index) {
+  return kind_name(modality) + (index == 0 ? "" : std::to_string(index + 1));
+}
+
+std::string recorded_camera_names(const DatasetInfo& info) {
+  std::string list;
+  for (const RecordedCamera& camera : recorded_cameras(info)) list += (list.empty() ? "" : ", ") + camera.name;
+  return list;
+}
+
+std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name) {
+  std::size_t events = 0, frames = 0;
+  for (const RecordedCamera& camera : all) {
+    std::size_t& place = camera.modality == Modality::Events ? events : frames;
+    if (name == usual_camera_name(camera.modality, place++)) return camera.name;
+  }
+  return std::nullopt;
+}
+
+NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<std::string>& streams,
+                          const std::vector<std::string>& wanted, const std::string& file) {
+  NamedStreams named;
+  for (std::size_t i = 0; i < streams.size(); ++i) named.names.push_back(usual_camera_name(modality, i));
+  std::vector<std::string> cameras;
+  if (rig)
+    for (const RigCamera& camera : rig->cameras)
+      if (camera.modality == modality) cameras.push_back(camera.name);
+  const auto is_among = [](const std::vector<std::string>& names) {
+    return [&names](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+  };
+  if (cameras.size() < streams.size() || std::ranges::all_of(named.names, is_among(cameras))) return named;
+  if (cameras.size() < 2 && std::ranges::none_of(cameras, is_among(wanted))) return named;
+  std::vector<std::string> by_words = named_by_words(cameras, streams);
+  const bool words = !by_words.empty();
+  if (!words && cameras.size() != streams.size()) return named;
+  named.names = words ? std::move(by_words) : cameras;
+  if (cameras.size() < 2) return named;
+  named.said = fmt::format("{}: cameras are assigned {}:", file, words ? "by their names" : "in order");
+  for (std::size_t i = 0; i < streams.size(); ++i)
+    named.said += fmt::format("{} {} is '{}'", i == 0 ? "" : ",", streams[i], named.names[i]);
+  return named;
+}
+
+std::string match_camera(Rig& rig, const DatasetInfo& info, Modality modality) {
+  check_further_cameras(rig, info, modality);
+  const std::string& wanted = modality == Modality::Events ? info.event_camera : info.frame_camera;
+  const std::string kind = kind_name(modality);
+  const auto is_kind = [modality](const RigCamera& camera) { return camera.modality == modality; };
+  const auto named = std::ranges::find(rig.cameras, wanted, &RigCamera::name);
+  if (named != rig.cameras.end() && is_kind(*named)) {
+    const auto first = std::ranges::find_if(rig.cameras, is_kind);
+    std::rotate(first, named, std::next(named));
+    return "";
+  }
+  const auto count = std::ranges::count_if(rig.cameras, is_kind);
+  if (count == 0) refuse(rig, info, modality, fmt::format("none is of {}", kind));
+  if (named != rig.cameras.end()) refuse(rig, info, modality, fmt::format("'{}' is not of {}", wanted, kind));
+  if (count > 1) refuse(rig, info, modality, fmt::format("several are of {}, none is called '{}'", kind, wanted));
+  RigCamera& camera = *std::ranges::find_if(rig.cameras, is_kind);
+  std::string said =
+      fmt::format("camera '{}' of the calibration is taken for the recording's '{}': it is the only one of {}",
+                  camera.name, wanted, kind);
+  camera.name = wanted;
+  return said;
+}
+
+}  // namespace edged

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Reads items with stamps, one per line, and returns them in strictly increasing time order.
+#pragma once
+
+#include <spdlog/fmt/fmt.h>
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "edged/core/measurement_stamps.hpp"
+#include "edged/io/parse/ahead_gate.hpp"
+#include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/text_parsing.hpp"
+#include "edged/time.hpp"
+
+namespace edged {
+
+/// How to treat a last line without line end: numbers may have lost digits, but a file name is checked anyway.
+enum class LastLine { MustEnd, MayLackEnd };
+
+/// T has a `time_of`. Unreadable and late lines and repeated stamps are left out and counted.
+template <typename T>
+class StampedLines {
+ public:
+  struct Spec {
+    SourcePath file;
+    std::string subject;  ///< "imu", "frames": the prefix of the kinds of repairs
+    std::string layout;   ///< the expected form of a line, for messages
+    LastLine last_line = LastLine::MustEnd;
+    std::function<std::optional<T>(std::string_view)> parse;
+  };
+
+  StampedLines(Spec spec, Repairs& repairs)
+      : spec_(std::move(spec)), lines_(spec_.file), damage_(spec_.file.string(), spec_.subject, repairs) {
+    advance();
+  }
+
+  /// The next item, or null at the end.
+  const T* peek() const { return next_ ? &*next_ : nullptr; }
+
+  T pop() {
+    T item = std::move(*next_);
+    taken_ = time_of(item);
+    advance();
+    return item;
+  }
+
+ private:
+  static constexpr Duration kWrongStamp = std::chrono::milliseconds(100);
+
+  /// One item is held back, so that a single wrong stamp far ahead is dropped instead of everything after it.
+  void advance() {
+    next_.reset();
+    while (auto item = next_passed()) {
+      if (!held_) {
+        held_ = std::move(item);
+      } else if (time_of(*item) > time_of(*held_)) {
+        next_ = std::exchange(held_, std::move(item));
+        return;
+      } else if (time_of(*item) == time_of(*held_)) {
+        damage_.mended(line_, "duplicate stamp", "same stamp as the line above; the first is kept");
+      } else {
+        const bool held_is_wrong =
+            time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
+        damage_.bad(line_, "out of order, dropped", "stamp goes back in time");
+        if (held_is_wrong) held_ = std::move(item);
+      }
+    }
+    next_ = std::exchange(held_, std::nullopt);
+  }
+
+  /// The next item that the gate accepts.
+  std::optional<T> next_passed() {
+    const auto pass = [this](T item) { passed_.push_back(std::move(item)); };
+    while (passed_.empty() && !ended_) {
+      if (auto item = parse_next()) {
+        gate_.push(std::move(*item), pass, [this](const T& wrong, Timestamp next) {
+          damage_.bad(
+              line_, "stamp far ahead, dropped",
+              fmt::format("stamp {} s is followed by {} s", format_seconds(time_of(wrong)), format_seconds(next)));
+        });
+      } else {
+        gate_.finish(pass);
+        ended_ = true;
+      }
+    }
+    if (passed_.empty()) return std::nullopt;
+    T item = std::move(passed_.front());
+    passed_.pop_front();
+    return item;
+  }
+
+  std::optional<T> parse_next() {
+    while (const auto line = lines_.next()) {
+      line_ = line->number;
+      auto item = spec_.parse(line->text);
+      if (!item && !parsed_ && is_heading(line->text)) continue;
+      parsed_ = parsed_ || item;
+      if (item && (line->terminated || spec_.last_line == LastLine::MayLackEnd)) return item;
+      if (!line->terminated) {
+        damage_.mended(line_, "last line cut", "the file ends within a line, which is left out");
+      } else {
+        damage_.bad(line_, "unreadable line", "not `" + spec_.layout + "` in finite numbers");
+      }
+    }
+    if (!lines_.damage().empty() && !std::exchange(damage_counted_, true))
+      damage_.mended(line_, "file cut by damage", lines_.damage());
+    return std::nullopt;
+  }
+
+  Spec spec_;
+  LineReader lines_;
+  LineDamage damage_;
+  std::size_t line_ = 0;
+  bool damage_counted_ = false;
+  bool parsed_ = false;  ///< at least one line was parsed
+  bool ended_ = false;
+  AheadGate<T> gate_;
+  std::deque<T> passed_;
+  std::optional<T> next_, held_;
+  std::optional<Timestamp> taken_;
+};
+
+}  // namespace edged

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Reads blocks, lines, fields, numbers and stamps of text files.
+#include "edged/io/parse/text_parsing.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "edged/core/check.hpp"
+
+namespace edged {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r";
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string_view trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+/// The digits of a decimal number without leading zeros. Its value is 0.DIGITS * 10^point.
+struct Decimal {
+  std::string digits;
+  long point = 0;
+  bool negative = false;
+};
+
+std::optional<Decimal> parse_decimal(std::string_view text) {
+  Decimal d;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
+    d.negative = text[0] == '-';
+    text.remove_prefix(1);
+  }
+  bool any = false, fraction = false;
+  std::size_t i = 0;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '.' && !fraction) {
+      fraction = true;
+      continue;
+    }
+    if (!is_digit(text[i])) break;
+    any = true;
+    if (!(d.digits.empty() && text[i] == '0')) d.digits.push_back(text[i]);
+    if (!fraction && !d.digits.empty()) ++d.point;
+    if (fraction && d.digits.empty()) --d.point;
+  }
+  if (!any) return std::nullopt;
+  if (i == text.size()) return d;
+  if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
+  std::string_view exponent = text.substr(i + 1);
+  if (!exponent.empty() && exponent[0] == '+') exponent.remove_prefix(1);
+  int value = 0;
+  const auto [end, error] = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
+  if (error != std::errc() || end != exponent.data() + exponent.size()) return std::nullopt;
+  d.point += value;
+  return d;
+}
+
+}  // namespace
+
+BlockReader::BlockReader(const SourcePath& file, std::size_t block_bytes)
+    : name_(file.string()), source_(file.open()), buffer_(block_bytes + 1) {}
+
+/// Fills the buffer, or reads to the end of the file. One byte is reserved for a line end.
+void BlockReader::fill() try {
+  while (!at_end_ && filled_ < buffer_.size() - 1) {
+    const std::size_t got = source_->read({buffer_.data() + filled_, buffer_.size() - 1 - filled_});
+    filled_ += got;
+    at_end_ = got == 0;
+  }
+} catch (const Damage& damage) {
+  damage_ = damage.what();
+  at_end_ = true;
+}
+
+std::string_view BlockReader::next() {
+  filled_ -= given_;
+  std::memmove(buffer_.data(), buffer_.data() + given_, filled_);
+  given_ = 0;
+  fill();
+
+  const std::string_view all(buffer_.data(), filled_);
+  const std::size_t last_end = all.rfind('\n');
+  if (last_end != std::string_view::npos) {
+    given_ = last_end + 1;
+  } else if (!at_end_) {
+    throw InputError::format("{}: no line end within {} bytes: this is not a text file", name_, buffer_.size() - 1);
+  } else if (filled_ > 0) {
+    buffer_[filled_++] = '\n';
+    given_ = filled_;
+    unterminated_ = true;
+  }
+  return {buffer_.data(), given_};
+}
+
+std::optional<TextLine> LineReader::next() {
+  while (true) {
+    if (block_.empty()) block_ = blocks_.next();
+    if (block_.empty()) return std::nullopt;
+    const std::size_t end = block_.find('\n');
+    const std::string_view text = trim(block_.substr(0, end));
+    block_.remove_prefix(end + 1);
+    ++number_;
+    if (!text.empty() && text[0] != '#') return TextLine{text, number_, !(block_.empty() && blocks_.unterminated())};
+  }
+}
+
+bool is_heading(std::string_view line) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return !line.empty() && (letter(line[0]) || line[0] == '"' || line[0] == '%');
+}
+
+std::vector<std::string> heading_fields(std::string_view line) {
+  const bool listed = line.find_first_of(",;") != std::string_view::npos;
+  std::vector<std::string> fields;
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.size(), line.find_first_of(listed ? ",;" : " \t\r"));
+    const std::string_view field = line.substr(0, end);
+    line.remove_prefix(std::min(line.size(), end + 1));
+    if (!listed && field.empty()) continue;
+    const bool unit = !listed && !fields.empty() &&
+                      (field[0] == '[' || field[0] == '(' ||
+                       fields.back().find_last_of("[(") + 1 > fields.back().find_last_of("])") + 1);
+    if (unit)
+      fields.back() += field;
+    else
+      fields.emplace_back(field);
+  }
+  return fields;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+std::string_view FieldReader::next() {
+  rest_ = rest();
+  const std::size_t end = rest_.find_first_of(" \t\r,;");
+  const std::string_view field = rest_.substr(0, end);
+  rest_.remove_prefix(field.size());
+  rest_ = rest();
+  if (!rest_.empty() && (rest_[0] == ',' || rest_[0] == ';')) rest_.remove_prefix(1);
+  return field;
+}
+
+std::string_view FieldReader::rest() const { return trim(rest_); }
+
+std::optional<double> parse_number(std::string_view field) {
+  if (!field.empty() && field[0] == '+') field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::optional<TimeUnit> parse_time_unit(std::string_view text) {
+  if (text == "s") return TimeUnit::Seconds;
+  if (text == "ms") return TimeUnit::Milliseconds;
+  if (text == "us") return TimeUnit::Microseconds;
+  if (text == "ns") return TimeUnit::Nanoseconds;
+  return std::nullopt;
+}
+
+const char* unit_name(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::Seconds:
+      return "s";
+    case TimeUnit::Milliseconds:
+      return "ms";
+    case TimeUnit::Microseconds:
+      return "us";
+    case TimeUnit::Nanoseconds:
+      return "ns";
+  }
+  return "";
+}
+
+std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
+  const std::optional<Decimal> d = parse_decimal(field);
+  if (!d) return std::nullopt;
+  const long whole = d->point + static_cast<long>(unit);  // digits of the integer part in nanoseconds
+  if (d->digits.empty() || whole < 0) return Timestamp(Duration(0));
+  if (whole > 19) return std::nullopt;
+  std::uint64_t ns = 0;
+  for (long i = 0; i < whole; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ns = ns * 10 + (k < d->digits.size() ? static_cast<std::uint64_t>(d->digits[k] - '0') : 0);
+  }
+  const auto next = static_cast<std::size_t>(whole);
+  if (next < d->digits.size() && d->digits[next] >= '5') ++ns;
+  if (ns > static_cast<std::uint64_t>(kMaxStampNs)) return std::nullopt;
+  const auto value = static_cast<std::int64_t>(ns);
+  return Timestamp(Duration(d->negative ? -value : value));
+}
+
+std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
+  std::int64_t ns = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
+  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  if (ns > kMaxStampNs || ns < -kMaxStampNs) return std::nullopt;
+  return Timestamp(Duration(ns));
+}
+
+std::string format_seconds(Timestamp t) {
+  const std::int64_t ns = to_ns(t);
+  const std::uint64_t size =
+      ns < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+  return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", size / 1'000'000'000, size % 1'000'000'000);
+}
+
+std::optional<Timestamp> last_stamp(const SourcePath& file,
+                                    const std::function<std::optional<Timestamp>(std::string_view)>& parse) {
+  constexpr std::streamoff kTail = 8192;
+  if (file.is_packed()) return std::nullopt;
+  std::ifstream in(file.string(), std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  const std::streamoff size = in.tellg();
+  const std::streamoff from = std::max<std::streamoff>(0, size - kTail);
+  std::string tail(static_cast<std::size_t>(size - from), '\0');
+  in.seekg(from);
+  in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+
+  std::string_view rest = tail;
+  rest = rest.substr(0, rest.rfind('\n') + 1);  // a cut last line may have a wrong stamp
+  while (!rest.empty()) {
+    rest.remove_suffix(1);
+    const std::size_t start = rest.rfind('\n') + 1;
+    if (start == 0 && from > 0) return std::nullopt;  // the line begins before the tail
+    if (const auto t = parse(rest.substr(start))) return t;
+    rest = rest.substr(0, start);
+  }
+  return std::nullopt;
+}
+
+}  // namespace edged

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Trajectories as text: TUM, EuRoC csv and KITTI.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "edged/io/archive/source_path.hpp"
+#include "edged/io/parse/pose_columns.hpp"
+#include "edged/state.hpp"
+
+namespace edged {
+
+/// Called with the number and the error of each line that is left out.
+using DamageHandler = std::function<void(std::size_t line, const std::string& detail)>;
+
+/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments, unless a heading names other columns. Stamps are exact to the
+/// nanosecond, also with exponents. The returned stamps are strictly increasing. on_damage is called for a bad line
+/// (unreadable, not finite, no unit quaternion, stamp not after the previous one). Without on_damage, throws InputError
+/// with file and line; only of a repeated stamp, the first pose is kept and a warning logged.
+Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage = {});
+
+/// The same with stamps in microseconds (TUM-VIE).
+Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage = {});
+
+/// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Bad lines as in read_tum.
+Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage = {});
+
+/// KITTI: 12 numbers of [R | t], row by row; the index of a pose is its time in seconds. Bad lines as in read_tum.
+Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
+
+/// The form of a file of poses.
+struct TrajectoryForm {
+  bool untimed = false;  ///< KITTI
+  PoseColumns columns;   ///< of other formats; `said` and `doubt` also of KITTI
+};
+
+/// Detects the form by heading, columns, separators and stamps. Throws InputError if the file holds no poses.
+TrajectoryForm find_trajectory_form(const SourcePath& file);
+
+/// Reads the trajectory of any program: TUM, EuRoC, KITTI, ORB-SLAM3, OKVIS2, OpenVINS, VINS-Mono and VINS-Fusion,
+/// Kalibr, maplab.
+Trajectory read_trajectory(const SourcePath& file, const TrajectoryForm& form);
+/// The same, with a warning if the form is not certain.
+Trajectory read_trajectory(const SourcePath& file);
+
+enum class TrajectoryFormat { Tum, EurocCsv, Kitti };
+
+/// Writes pose after pose, so that an interrupted run leaves a complete file. Numbers read back to the same bits,
+/// except for KITTI, which holds matrices.
+class TrajectoryWriter {
+ public:
+  /// comments: each becomes a line that starts with "# ". Not written for KITTI, whose readers take each line as a
+  /// pose. Throws InputError if the file cannot be created.
+  TrajectoryWriter(const std::filesystem::path& file, TrajectoryFormat format,
+                   const std::vector<std::string>& comments);
+  void add(const StampedPose& pose);
+  /// Throws InputError if the disk is full.
+  void flush();
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  TrajectoryFormat format_;
+};
+
+void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
+               const std::vector<std::string>& comments = {});
+void write_euroc_csv(const std::filesystem::path& file, const Trajectory& trajectory,
+                     const std::vector<std::string>& comments = {});
+
+}  // namespace edged
