@@ -30,7 +30,7 @@ struct VelocityAgreement {
 };
 
 /// Over a few seconds, the motion of the body is the integral of the accelerometer, with unknown velocity, gravity and
-/// biases (docs/math.md, Y1). Nothing if the motion does not determine the result.
+/// biases (docs/external-sensors.md, Y1). Nothing if the motion does not determine the result.
 std::optional<HeightAgreement> compare_heights(const std::vector<HeightSample>& samples, const GyroIntegral& gyro);
 /// noise: of a sample [m/s].
 std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySample>& samples,
