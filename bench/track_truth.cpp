@@ -10,7 +10,7 @@
 #include "edged/camera/output_frame.hpp"
 #include "edged/camera/two_view.hpp"
 #include "edged/core/check.hpp"
-#include "edged/sim/renderer.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 
 namespace edged {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "edged/pipeline/mode.hpp"
-#include "edged/sim/renderer.hpp"
-#include "edged/sim/scene.hpp"
-#include "edged/sim/trajectory.hpp"
+#include "edged/sim/motion/trajectory.hpp"
+#include "edged/sim/scene/scene.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 #include "run/dense_scan.hpp"
 
 namespace edged {

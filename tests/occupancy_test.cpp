@@ -16,7 +16,7 @@
 #include "edged/eval/alignment.hpp"
 #include "edged/occupancy/occupancy_scan.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "edged/sim/scene.hpp"
+#include "edged/sim/scene/scene.hpp"
 #include "end_to_end.hpp"
 #include "run/occupancy.hpp"
 

@@ -13,7 +13,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/input_error.hpp"
 #include "edged/sim/disturbance.hpp"
-#include "edged/sim/motion.hpp"
+#include "edged/sim/motion/motion.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {

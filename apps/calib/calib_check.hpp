@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/source.hpp"
-#include "edged/survey/calibration_fit.hpp"
+#include "edged/checks/calibration_fit.hpp"
 
 namespace edged {
 

@@ -16,9 +16,9 @@
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/status_line.hpp"
+#include "edged/checks/statistics/allan_deviation.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
-#include "edged/survey/allan_deviation.hpp"
 
 namespace edged {
 namespace {

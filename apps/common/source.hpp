@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "common/cli_fwd.hpp"
+#include "edged/checks/finding.hpp"
 #include "edged/core/recording_piece.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/simulator.hpp"
-#include "edged/survey/finding.hpp"
 
 namespace edged {
 

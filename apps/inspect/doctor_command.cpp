@@ -12,9 +12,9 @@
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
+#include "edged/checks/agreement/external_agreement.hpp"
+#include "edged/checks/diagnosis.hpp"
 #include "edged/core/measurement_stamps.hpp"
-#include "edged/survey/diagnosis.hpp"
-#include "edged/survey/external_agreement.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/source.hpp"
-#include "edged/survey/calibration_fit.hpp"
-#include "edged/survey/diagnosis.hpp"
-#include "edged/survey/survey.hpp"
+#include "edged/checks/calibration_fit.hpp"
+#include "edged/checks/diagnosis.hpp"
+#include "edged/checks/statistics/survey.hpp"
 
 namespace edged {
 

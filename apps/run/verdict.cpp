@@ -12,11 +12,11 @@
 #include "common/counted.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
+#include "edged/checks/run_check.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/external_sensor.hpp"
 #include "edged/estimator/calibration_prior.hpp"
-#include "edged/survey/run_check.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/source.hpp"
+#include "edged/checks/calibration_fit.hpp"
+#include "edged/checks/diagnosis.hpp"
 #include "edged/odometry.hpp"
 #include "edged/rig.hpp"
-#include "edged/survey/calibration_fit.hpp"
-#include "edged/survey/diagnosis.hpp"
 #include "run/run_statistics.hpp"
 
 namespace edged {

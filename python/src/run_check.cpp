@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // What `edged run` checks beside its steps, for edged.run.
-#include "edged/survey/run_check.hpp"
+#include "edged/checks/run_check.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>

@@ -14,11 +14,11 @@
 #include "edged/core/check.hpp"
 #include "edged/events/voxel_grid.hpp"
 #include "edged/sim/disturbance.hpp"
-#include "edged/sim/event_camera.hpp"
-#include "edged/sim/motion.hpp"
+#include "edged/sim/motion/motion.hpp"
 #include "edged/sim/random.hpp"
-#include "edged/sim/renderer.hpp"
-#include "edged/sim/scene.hpp"
+#include "edged/sim/scene/scene.hpp"
+#include "edged/sim/sensors/event_camera.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {

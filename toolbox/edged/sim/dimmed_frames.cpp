@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "edged/sim/frame_camera.hpp"
+#include "edged/sim/sensors/frame_camera.hpp"
 
 namespace edged {
 namespace {

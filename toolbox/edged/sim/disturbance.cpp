@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "edged/core/angles.hpp"
-#include "edged/sim/light.hpp"
+#include "edged/sim/scene/light.hpp"
 
 namespace edged {
 namespace {

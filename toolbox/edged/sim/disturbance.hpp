@@ -3,8 +3,8 @@
 // The motion of a simulated recording with a disturbance.
 #pragma once
 
+#include "edged/sim/motion/trajectory.hpp"
 #include "edged/sim/simulator_config.hpp"
-#include "edged/sim/trajectory.hpp"
 
 namespace edged {
 

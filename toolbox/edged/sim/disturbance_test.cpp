@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "edged/core/check.hpp"
-#include "edged/sim/renderer.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 #include "edged/sim/test_recording.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/sim/flight.hpp"
+#include "edged/sim/motion/flight.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {

@@ -13,13 +13,13 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/sim/disturbance.hpp"
-#include "edged/sim/event_camera.hpp"
-#include "edged/sim/external_model.hpp"
-#include "edged/sim/frame_camera.hpp"
-#include "edged/sim/imu_model.hpp"
-#include "edged/sim/motion.hpp"
-#include "edged/sim/renderer.hpp"
-#include "edged/sim/scene.hpp"
+#include "edged/sim/motion/motion.hpp"
+#include "edged/sim/scene/scene.hpp"
+#include "edged/sim/sensors/event_camera.hpp"
+#include "edged/sim/sensors/external_model.hpp"
+#include "edged/sim/sensors/frame_camera.hpp"
+#include "edged/sim/sensors/imu_model.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 
 namespace edged {
 namespace {

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Calibrates gyro against camera from corner rays, over all rotations at once.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "edged/checks/agreement/gyro_integral.hpp"
+#include "edged/checks/agreement/visual_turns.hpp"
+
+namespace edged {
+
+/// The relation of the gyro's rotation to that of a camera.
+struct GyroMount {
+  Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
+  double shift_s = 0.0;                            ///< t_imu = t_cam + shift
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< of the gyro, in its measurement
+  double gyro_scale = 1.0;                         ///< measured over true angular speed
+};
+
+struct RayFit {
+  GyroMount mount;
+  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  ///< of R_B_C * Exp(error) [rad^2]
+  double shift_sigma_s = 0.0;
+  double unexplained = 1.0;  ///< share of the cost that independent rotations explain, but those of the gyro do not
+  double scale_sigma = 0.0;  ///< of mount.gyro_scale
+  double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
+};
+
+/// The unit direction of the translation during a rotation, in the camera axes at its begin. R: rotation from end to
+/// begin. Zero if the corners do not determine it.
+Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end);
+
+/// The mount with the smallest epipolar error of all corners, for any translation in each rotation (Gauss-Newton on the
+/// cost of Kneip and Lynen, ICCV 2013, summed over all rotations). With a narrow view or a flat scene, one pair of
+/// images hardly separates rotation from translation, but the common parameters of all pairs are well determined.
+/// Nothing without corners, or with too little rotation of the gyro.
+std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start);
+
+}  // namespace edged

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/checks/imu_diagnosis.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "edged/core/angles.hpp"
+#include "edged/se3.hpp"
+
+namespace edged {
+namespace {
+
+void judge_imu_rate(const Survey& s, Findings& out) {
+  const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
+  if (rate < 100.0)
+    out.warn(fmt::format("IMU at {:.0f} Hz", rate),
+             "record it at 200 Hz or more: between samples the motion is interpolated");
+  else
+    out.good(fmt::format("IMU at {:.0f} Hz", rate));
+  if (s.imu.gaps == 0) return;
+  const Gap& longest = s.imu.longest.front();
+  const std::string text =
+      fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", s.imu.gaps,
+                  to_seconds(s.imu.missing), to_seconds(longest.length), to_seconds(longest.after));
+  const std::string remedy =
+      "in a gap the cameras alone determine the motion; look for an overloaded USB bus or a full disk";
+  to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
+}
+
+/// A working sensor does not repeat its readings to the last bit for long, neither all axes nor one of them.
+void judge_frozen(const char* sensor, const char* unit, const FrozenReadings& f, Findings& out) {
+  constexpr Duration kShort = std::chrono::seconds(1);
+  const std::string value = fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", f.value.x(), f.value.y(), f.value.z(), unit);
+  if (f.dead())
+    return out.imu_unusable(
+        f.value.isZero(0.0) ? fmt::format("{} is constant zero", sensor)
+                            : fmt::format("{} does not change: it is {} all the time", sensor, value),
+        fmt::format("the driver does not set it, or it has a topic of its own: record the {}, too", sensor));
+  for (const std::size_t axis : {0, 1, 2})
+    if (f.dead(axis))
+      out.imu_unusable(fmt::format("{}: its {} axis does not change", sensor, "xyz"[axis]),
+                       "check its columns and the driver: two axes are not enough");
+  if (f.longest >= kShort)
+    out.error(fmt::format("{} does not change for {:.1f} s from {:.3f} s: it reads {}", sensor, to_seconds(f.longest),
+                          to_seconds(f.since), value),
+              "the driver repeats its last sample: remove these samples, then they count as a gap");
+}
+
+std::string lengths_text(const Survey& s, double cameras_s) {
+  return fmt::format("the IMU covers {:.1f} s, the other sensors {:.1f} s", to_seconds(s.imu.length()), cameras_s);
+}
+
+/// The ratio of the durations of IMU and cameras, if it is close to two or a power of a thousand: another clock or
+/// unit.
+std::optional<double> known_span_ratio(const Survey& s, double cameras_s) {
+  constexpr double kNear = 0.02, kLeast_s = 1.0;
+  const double ratio = s.imu_span_ratio();
+  for (const double known : {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9})
+    if (cameras_s > kLeast_s && std::abs(ratio / known - 1.0) < kNear) return known;
+  return std::nullopt;
+}
+
+/// True if the gyro explains the rotations with about the calibrated R_B_C. With clocks of different rates, a very
+/// different R_B_C may seem to fit.
+bool turns_as_calibrated(const CameraCheck& check) {
+  constexpr double kMost_deg = 20.0;
+  if (!check.sure() || !check.has_extrinsics) return check.sure();
+  const Eigen::Quaterniond R_B_C(check.agreement->R_B_C);
+  return so3::log(check.camera.T_B_C.rotation().conjugate() * R_B_C).norm() < kMost_deg * kDegree;
+}
+
+void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
+  constexpr double kTogether_s = 0.3, kSameLength = 0.05;
+  const auto visual = s.cameras();
+  if (!visual) return;
+  const double cameras_s = to_seconds(visual->second - visual->first), ratio = s.imu_span_ratio();
+  const auto known = known_span_ratio(s, cameras_s);
+  const bool agrees = std::ranges::any_of(cameras, turns_as_calibrated);
+  // Rates that differ by less than a tenth let a camera turn about as calibrated.
+  const auto measured = std::ranges::find_if(
+      cameras, [=](const CameraCheck& c) { return c.clock && !(agrees && std::abs(c.clock->rate - 1.0) > 0.1); });
+  if (measured != cameras.end()) {
+    const bool as_lasts = known && std::abs(measured->clock->rate / *known - 1.0) < kSameLength;
+    // A few seconds of rotation determine the rate to a few per cent only.
+    const double rate = as_lasts ? *known : measured->clock->rate;
+    const std::string lengths = std::abs(ratio / rate - 1.0) < kSameLength && std::abs(rate - 1.0) > 0.1
+                                    ? lengths_text(s, cameras_s) + ": "
+                                    : "";
+    return out.imu_unusable(
+        fmt::format("{}{} clock runs at {:.{}f} times that of camera {}, by the rotation of both", lengths,
+                    lengths.empty() ? "the IMU's" : "its", rate, std::abs(rate - 1.0) > 0.1 ? 2 : 3,
+                    measured->camera.name),
+        fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver",
+                    rate));
+  }
+  if (agrees || !known || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
+    return;
+  const bool unit = *known > 10.0 || *known < 0.1;
+  out.imu_unusable(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
+                                                      : fmt::format(": its clock runs at {:.1f} times theirs", *known)),
+                   unit ? "write all stamps in one unit"
+                        : fmt::format("--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then mend "
+                                      "the driver",
+                                      *known));
+}
+
+/// True if gravity, which has a constant norm, is in the columns of the gyro and not in those of the accelerometer.
+bool columns_swapped(const ImuSurvey& imu) {
+  const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
+  return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&
+         imu.mean_accel < 0.6 * imu.mean_gyro;
+}
+
+void judge_accel_unit(const ImuSurvey& imu, Findings& out) {
+  const double g = imu.mean_accel;
+  const double calm = imu.calm ? imu.calm->accel.norm() : g;  // a mean, so that motion does not count
+  if (g > 0.7 && g < 2.5 && calm > 0.8 && calm < 1.25)
+    out.error(fmt::format("accelerometer in g: its mean is {:.2f}, not about 9.8 m/s^2", g), "multiply it by 9.80665");
+  else if (g > 8000 && g < 12000)
+    out.error(fmt::format("accelerometer in mm/s^2: its mean is {:.0f}", g), "divide it by 1000");
+  else if (g < 2.5)
+    out.error(fmt::format("accelerometer without gravity: its mean is {:.2f} m/s^2", g),
+              "record the raw specific force, not the linear acceleration");
+  else if (g < 8.0 || g > 13.0)
+    out.warn(fmt::format("accelerometer with a mean of {:.2f} m/s^2, not about 9.8", g), "check its scale and unit");
+  else
+    out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
+}
+
+void judge_gyro_unit(const ImuSurvey& imu, const std::vector<CameraCheck>& cameras, Findings& out) {
+  constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
+  const bool compared = std::ranges::any_of(cameras, &CameraCheck::sure);
+  if (std::ranges::any_of(cameras, &CameraCheck::in_degrees))
+    out.error("gyro in deg/s: it turns 57 times as fast as the camera", "multiply it by pi / 180");
+  else if (!compared && imu.mean_gyro > kFastest)
+    out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
+  else
+    out.good(fmt::format("gyro with a mean of {:.2f}, highest {:.2f} rad/s{}", imu.mean_gyro, imu.max_gyro,
+                         compared ? "" : " (its unit is not checked against a camera)"));
+}
+
+}  // namespace
+
+// Corners on images of events underestimate rotation by a third, and no other unit is within a factor of two.
+bool CameraCheck::in_degrees() const {
+  const double ratio = sure() ? agreement->gyro_scale / kDegreesPerRadian : 0.0;
+  return ratio > 0.5 && ratio < 2.0;
+}
+
+void judge_imu(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
+  if (s.imu.count == 0) return;
+  judge_imu_rate(s, out);
+  judge_clock(s, cameras, out);
+  const ImuSurvey& imu = s.imu_details;
+  judge_frozen("gyro", "rad/s", imu.gyro_frozen, out);
+  judge_frozen("accelerometer", "m/s^2", imu.accel_frozen, out);
+  if (columns_swapped(imu))
+    return out.error(
+        fmt::format("gyro and accelerometer are swapped: the gyro has gravity (mean {:.2f}), the accelerometer a mean "
+                    "of {:.2f}",
+                    imu.mean_gyro, imu.mean_accel),
+        "exchange the columns: an imu.txt has t ax ay az gx gy gz, EuRoC's data.csv t gx gy gz ax ay az");
+  if (!imu.accel_frozen.dead()) judge_accel_unit(imu, out);
+  if (!imu.gyro_frozen.dead()) judge_gyro_unit(imu, cameras, out);
+}
+
+}  // namespace edged
