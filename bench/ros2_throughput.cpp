@@ -16,8 +16,8 @@
 
 #include "dds/subscription.hpp"
 #include "edged/io/parse/evt_encoder.hpp"
-#include "edged/io/ros/event_packets.hpp"
-#include "edged/io/ros/wire_writer.hpp"
+#include "edged/io/ros/messages/event_packets.hpp"
+#include "edged/io/ros/messages/wire_writer.hpp"
 
 namespace edged::ros2 {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "edged/camera/undistort.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/ros/open_messages.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

@@ -6,7 +6,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::node {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "edged/core/check.hpp"
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 #include "node/node_test_support.hpp"
 
 namespace edged::node {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "edged/io/ros/definitions.hpp"
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::node {
 namespace {

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 
 #include "edged/io/parse/evt_encoder.hpp"
-#include "edged/io/ros/bag_test_support.hpp"
-#include "edged/io/ros/definitions.hpp"
+#include "edged/io/ros/bag/bag_test_support.hpp"
+#include "edged/io/ros/messages/definitions.hpp"
 
 namespace edged::node {
 namespace {

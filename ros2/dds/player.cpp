@@ -11,7 +11,7 @@
 #include "edged/core/measurement_stamps.hpp"
 #include "edged/io/parse/evt_encoder.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/wire_writer.hpp"
+#include "edged/io/ros/messages/wire_writer.hpp"
 #include "edged/live/live_clock.hpp"
 
 namespace edged::ros2 {

@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::ros2 {
 namespace {

@@ -3,8 +3,8 @@
 // Any bytes as a ROS message: the first byte chooses the wire format and the type.
 #include <array>
 
-#include "edged/io/ros/event_packets.hpp"
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/event_packets.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edged;

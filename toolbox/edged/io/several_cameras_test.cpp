@@ -11,7 +11,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/ros/bag_test_support.hpp"
+#include "edged/io/ros/bag/bag_test_support.hpp"
 #include "edged/io/test_support.hpp"
 #include "edged/io/write_recording.hpp"
 

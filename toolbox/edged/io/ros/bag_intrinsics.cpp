@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "edged/io/ros/messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "edged/io/core/topic_choice.hpp"
-#include "edged/io/ros/message_source.hpp"
+#include "edged/io/ros/bag/message_source.hpp"
 #include "edged/io/sensor_head.hpp"
 
 namespace edged {

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "edged/io/ros/messages.hpp"
-#include "edged/io/ros/open_messages.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged {
 namespace {

@@ -8,8 +8,8 @@
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/geometry.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 #include "edged/io/ros/bag_intrinsics.hpp"
-#include "edged/io/ros/open_messages.hpp"
 
 namespace edged {
 namespace {

@@ -9,9 +9,9 @@
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/core/topic_choice.hpp"
 #include "edged/io/recording.hpp"
+#include "edged/io/ros/bag/message_source.hpp"
 #include "edged/io/ros/imu_topics.hpp"
-#include "edged/io/ros/message_source.hpp"
-#include "edged/io/ros/sensor_messages.hpp"
+#include "edged/io/ros/messages/sensor_messages.hpp"
 
 namespace edged {
 

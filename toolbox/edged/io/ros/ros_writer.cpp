@@ -9,10 +9,10 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/bag_writer.hpp"
-#include "edged/io/ros/definitions.hpp"
-#include "edged/io/ros/mcap_sink.hpp"
-#include "edged/io/ros/wire_writer.hpp"
+#include "edged/io/ros/bag/bag_writer.hpp"
+#include "edged/io/ros/bag/mcap_sink.hpp"
+#include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/ros/messages/wire_writer.hpp"
 
 namespace edged {
 namespace {

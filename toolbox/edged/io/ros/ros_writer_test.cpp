@@ -9,8 +9,8 @@
 
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/ros/bag_test_support.hpp"
-#include "edged/io/ros/open_messages.hpp"
+#include "edged/io/ros/bag/bag_test_support.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 #include "edged/io/write_recording.hpp"
 
 namespace edged {

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The events of event_camera_msgs packets, on the clock of the headers' stamps.
+#pragma once
+
+#include <optional>
+
+#include "edged/io/parse/evt.hpp"
+#include "edged/io/ros/messages/messages.hpp"
+
+namespace edged {
+
+/// The clock of a sensor on that of the stamps. Aligned by the first packet, it then follows the drift between the two,
+/// by at most 500 ppm and with a time constant of 5 s, so that intervals are those of the sensor, without the jitter
+/// of the stamps.
+class SensorClock {
+ public:
+  /// What to add to the times of a packet with these first and last ones. Does not turn the order of two packets round.
+  Duration offset(Timestamp first, Timestamp last, Timestamp stamp);
+  void reset() { offset_.reset(); }
+
+ private:
+  std::optional<Duration> offset_;
+  Timestamp last_first_, last_last_;  ///< of the packet before
+};
+
+/// Decodes the encodings evt3, evt21, evt2, mono, libcaer and libcaer_cmp. The clock of the sensor (of the first four)
+/// is aligned anew after missing packets.
+class EventPacketDecoder {
+ public:
+  /// Throws Damage for packets that it cannot decode, also for other encodings.
+  std::vector<Event> decode(const EventPacket& packet);
+
+  /// Events that could not be decoded, most of them after missing packets: without time, or outside every sensor.
+  std::size_t left_out() const;
+
+ private:
+  struct Evt {
+    EvtFormat format;
+    EvtDecoder decoder;
+  };
+  /// The decoder of the stream, kept from packet to packet.
+  EvtDecoder& evt(EvtFormat format);
+
+  std::optional<Evt> evt_;
+  std::uint16_t column_ = 0;               ///< of libcaer_cmp, kept from packet to packet
+  std::optional<std::uint64_t> sequence_;  ///< of the last packet
+  SensorClock clock_;
+};
+
+}  // namespace edged
