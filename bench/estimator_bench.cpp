@@ -7,11 +7,11 @@
 
 #include <algorithm>
 
-#include "edged/estimator/cost.hpp"
-#include "edged/estimator/landmarks.hpp"
-#include "edged/estimator/marginalization.hpp"
-#include "edged/estimator/solver.hpp"
+#include "edged/estimator/solver/marginalization.hpp"
+#include "edged/estimator/solver/solver.hpp"
 #include "edged/estimator/test_world.hpp"
+#include "edged/estimator/window/cost.hpp"
+#include "edged/estimator/window/landmarks.hpp"
 
 namespace edged {
 namespace {

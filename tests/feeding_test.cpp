@@ -8,7 +8,7 @@
 #include <cmath>
 #include <thread>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "end_to_end.hpp"
 
 namespace edged {

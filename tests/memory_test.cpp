@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/live/live_source.hpp"
 #include "edged/live/test_storm.hpp"
 #include "edged/sim/simulator.hpp"

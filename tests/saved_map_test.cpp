@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "edged/core/check.hpp"
-#include "edged/core/recording_piece.hpp"
+#include "edged/core/measurements/recording_piece.hpp"
 #include "end_to_end.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 #include <map>
 #include <tuple>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/sim/simulated_pair.hpp"
 #include "end_to_end.hpp"
 

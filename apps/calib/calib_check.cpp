@@ -15,7 +15,7 @@
 #include "common/status_line.hpp"
 #include "edged/checks/calibration_fit.hpp"
 #include "edged/checks/run_check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "inspect/survey.hpp"

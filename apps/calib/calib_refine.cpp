@@ -17,8 +17,8 @@
 #include "common/json_text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/estimator/calibration_prior.hpp"
 #include "edged/estimator/estimator.hpp"
+#include "edged/estimator/window/calibration_prior.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "run/verdict.hpp"
 

@@ -22,7 +22,7 @@
 #include "edged/calibrate/collector.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/target/print.hpp"

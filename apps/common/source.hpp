@@ -13,7 +13,7 @@
 
 #include "common/cli_fwd.hpp"
 #include "edged/checks/finding.hpp"
-#include "edged/core/recording_piece.hpp"
+#include "edged/core/measurements/recording_piece.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/pipeline/mode.hpp"

@@ -14,7 +14,7 @@
 #include "common/log.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
 #include "edged/checks/diagnosis.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {

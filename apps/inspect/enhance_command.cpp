@@ -25,7 +25,7 @@
 #include "common/status_line.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
 #include "edged/events/warp.hpp"

@@ -21,7 +21,7 @@
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/event_pictures.hpp"
 #include "inspect/player_data.hpp"
 #include "program.hpp"

@@ -12,7 +12,7 @@
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

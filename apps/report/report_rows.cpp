@@ -14,7 +14,7 @@
 
 #include "common/step_facts.hpp"
 #include "edged/core/angles.hpp"
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {

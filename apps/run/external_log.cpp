@@ -6,8 +6,8 @@
 
 #include <fstream>
 
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "edged/core/angles.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

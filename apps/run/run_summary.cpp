@@ -13,7 +13,7 @@
 #include "common/json_text.hpp"
 #include "common/status_line.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "inspect/survey.hpp"
 #include "program.hpp"

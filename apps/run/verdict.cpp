@@ -15,8 +15,8 @@
 #include "edged/checks/run_check.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/estimator/calibration_prior.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/estimator/window/calibration_prior.hpp"
 #include "run/run_observer.hpp"
 
 namespace edged {

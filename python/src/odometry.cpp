@@ -8,7 +8,7 @@
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/pipeline/mode.hpp"
 

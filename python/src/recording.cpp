@@ -9,9 +9,9 @@
 
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
-#include "edged/core/recording_piece.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
+#include "edged/core/measurements/recording_piece.hpp"
 #include "edged/io/aedat/aedat4_tcp.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/run_cameras.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged::node {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 
 namespace edged::node {
 namespace {

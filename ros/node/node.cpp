@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::node {

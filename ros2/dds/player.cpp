@@ -7,8 +7,8 @@
 #include <chrono>
 
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/parse/evt_encoder.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/ros/messages/wire_writer.hpp"

@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/evt_encoder.hpp"

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "edged/estimator/cost.hpp"
-#include "edged/estimator/covariance.hpp"
-#include "edged/estimator/sliding.hpp"
-#include "edged/estimator/solver.hpp"
+#include "edged/estimator/solver/covariance.hpp"
+#include "edged/estimator/solver/sliding.hpp"
+#include "edged/estimator/solver/solver.hpp"
+#include "edged/estimator/window/cost.hpp"
 
 namespace edged {
 namespace {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "edged/core/odom_state.hpp"
-#include "edged/estimator/depth_terms.hpp"
-#include "edged/estimator/estimator_input.hpp"
-#include "edged/estimator/external_factors.hpp"
-#include "edged/estimator/initializer.hpp"
-#include "edged/estimator/standstill.hpp"
-#include "edged/estimator/window.hpp"
+#include "edged/estimator/external/external_factors.hpp"
+#include "edged/estimator/initialization/initializer.hpp"
+#include "edged/estimator/standstill/standstill.hpp"
+#include "edged/estimator/window/depth_terms.hpp"
+#include "edged/estimator/window/estimator_input.hpp"
+#include "edged/estimator/window/window.hpp"
 #include "edged/options/estimator.hpp"
 
 namespace edged {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/options/estimator.hpp"
 
-#include "edged/core/option_text.hpp"
+#include "edged/core/config/option_text.hpp"
 
 namespace edged {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/odometry_test_support.hpp"
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 
 namespace edged {

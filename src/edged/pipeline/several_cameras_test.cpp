@@ -7,7 +7,7 @@
 #include <random>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
 #include "edged/pipeline/mode.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/autopilot/arrival_clock.hpp"
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "edged/core/check.hpp"
-#include "edged/core/option_text.hpp"
+#include "edged/core/config/option_text.hpp"
 
 namespace edged {
 namespace {

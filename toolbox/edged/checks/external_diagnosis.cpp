@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 
 namespace edged {
 namespace {

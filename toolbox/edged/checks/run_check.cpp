@@ -10,7 +10,7 @@
 
 #include "edged/camera/field_of_view.hpp"
 #include "edged/core/angles.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/core/statistics.hpp"
 
 namespace edged {

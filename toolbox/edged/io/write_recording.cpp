@@ -10,8 +10,8 @@
 #include <array>
 
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/hdf5/hdf5_writer.hpp"

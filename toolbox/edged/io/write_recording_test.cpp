@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"

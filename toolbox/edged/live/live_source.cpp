@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

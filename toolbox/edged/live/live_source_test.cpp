@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/live/test_storm.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

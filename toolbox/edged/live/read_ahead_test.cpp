@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/live/test_storm.hpp"
 
 namespace edged {

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <set>
 
-#include "edged/core/recording_piece.hpp"
+#include "edged/core/measurements/recording_piece.hpp"
 #include "edged/sim/test_recording.hpp"
 
 namespace edged {

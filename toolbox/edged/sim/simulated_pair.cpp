@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
-#include "edged/core/stream_order.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
+#include "edged/core/measurements/stream_order.hpp"
 
 namespace edged {
 namespace {

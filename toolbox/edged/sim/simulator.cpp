@@ -11,7 +11,7 @@
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/motion/motion.hpp"
 #include "edged/sim/scene/scene.hpp"

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 
 namespace edged {
 namespace {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/jump_gate.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/jump_gate.hpp"
 #include "edged/counters.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/input/sequencer.hpp"

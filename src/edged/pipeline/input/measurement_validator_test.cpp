@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged {

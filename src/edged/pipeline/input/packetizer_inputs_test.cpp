@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
 #include "edged/pipeline/input/packetizer_test_support.hpp"
 #include "edged/pipeline/mode.hpp"

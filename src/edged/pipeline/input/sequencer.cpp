@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
-#include "edged/core/stream_order.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
+#include "edged/core/measurements/stream_order.hpp"
 
 namespace edged {
 namespace {

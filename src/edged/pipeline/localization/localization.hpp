@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/estimator/attitude_filter.hpp"
 #include "edged/estimator/estimator.hpp"
+#include "edged/estimator/standstill/attitude_filter.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/options.hpp"

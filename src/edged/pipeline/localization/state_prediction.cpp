@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/imu/preintegration.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 
 #include "edged/depth/depth_prior.hpp"
 #include "edged/depth/landmark_depth.hpp"
-#include "edged/estimator/region_depth.hpp"
+#include "edged/estimator/window/region_depth.hpp"
 #include "edged/options/depth.hpp"
 #include "edged/rig.hpp"
 

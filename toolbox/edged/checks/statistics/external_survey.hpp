@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edged/checks/statistics/stream_survey.hpp"
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 
 namespace edged {
 

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/core/path_length.hpp"
 
 namespace edged {

@@ -3,7 +3,7 @@
 // IMU samples that are merged from two streams, or corrected to another clock.
 #include <gtest/gtest.h>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/core/imu_join.hpp"
 #include "edged/io/core/imu_on_other_clock.hpp"
 #include "edged/io/test_support.hpp"

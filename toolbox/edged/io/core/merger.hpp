@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
-#include "edged/core/stream_order.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
+#include "edged/core/measurements/stream_order.hpp"
 #include "edged/io/parse/ahead_gate.hpp"
 #include "edged/io/parse/repairs.hpp"
 #include "edged/measurement.hpp"

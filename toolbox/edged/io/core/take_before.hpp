@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/measurement.hpp"

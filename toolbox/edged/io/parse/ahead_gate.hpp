@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/time.hpp"
 
 namespace edged {

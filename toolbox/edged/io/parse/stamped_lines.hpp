@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/parse/ahead_gate.hpp"
 #include "edged/io/parse/repairs.hpp"
 #include "edged/io/parse/text_parsing.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/core/take_before.hpp"
 #include "edged/io/parse/stamped_lines.hpp"

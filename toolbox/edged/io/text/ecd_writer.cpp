@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/parse/image_codec.hpp"

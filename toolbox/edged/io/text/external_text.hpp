@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/archive/source_path.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 #include "edged/io/text/ecd_writer.hpp"

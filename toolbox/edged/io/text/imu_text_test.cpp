@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
 

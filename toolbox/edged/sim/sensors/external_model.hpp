@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/sim/motion/trajectory.hpp"
 #include "edged/sim/random.hpp"
 #include "edged/sim/simulator_config.hpp"

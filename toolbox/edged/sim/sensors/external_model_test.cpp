@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "edged/core/measurement_stamps.hpp"
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/sim/simulator.hpp"
 
 namespace edged {

@@ -11,7 +11,7 @@
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/external_sensor.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/io/parse/distortion.hpp"
 #include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/text_parsing.hpp"

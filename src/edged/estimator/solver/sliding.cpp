@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/estimator/solver/sliding.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "edged/estimator/solver/marginalization.hpp"
+#include "edged/estimator/window/cost.hpp"
+
+namespace edged {
+namespace {
+
+constexpr double kRestStretch = 10.0;
+
+/// The youngest keyframe becomes the new anchor of landmarks that it observes; its observation and later ones are kept
+/// for that.
+StateId youngest_keyframe(const Window& window) {
+  StateId youngest = window.oldest_id();
+  for (const auto& [state, content] : window.states()) {
+    if (content.keyframe) youngest = state;
+  }
+  return youngest;
+}
+
+/// The landmarks anchored in the oldest state, and the observation that becomes the new anchor of those that the
+/// youngest keyframe observes: that of the same camera if there is one.
+using Inherited = std::map<FeatureId, std::optional<ObservationKey>>;
+
+Inherited inherited_landmarks(const Window& window) {
+  const StateId oldest = window.oldest_id(), youngest = youngest_keyframe(window);
+  Inherited inherited;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor || feature.anchor->state != oldest) continue;
+    std::optional<ObservationKey>& anchor = inherited[id];
+    if (youngest == oldest || !feature.seen_at(youngest)) continue;
+    anchor = feature.observations.lower_bound({youngest, 0})->first;
+    const ObservationKey same_camera{youngest, feature.anchor->camera};
+    if (feature.observations.contains(same_camera)) anchor = same_camera;
+  }
+  return inherited;
+}
+
+/// The terms that go into the prior when the oldest state is marginalized. Landmarks anchored in younger keyframes lose
+/// only an observation; of those with a new anchor, the observations before it are marginalized.
+Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const Inherited& inherited) {
+  const StateId oldest = window.oldest_id();
+  // States that are no keyframes will be dropped, not marginalized: the prior must not depend on them.
+  Cost cost = cost_of(window, Observations::OfKeyframes);
+  std::erase_if(cost.factors, [&](const auto& factor) { return !factor->marginalized_with(leaving); });
+  std::erase_if(cost.landmarks, [&](const LandmarkTerm& term) { return term.anchor.state != oldest; });
+  for (LandmarkTerm& term : cost.landmarks) {
+    const std::optional<ObservationKey>& anchor = inherited.at(term.id);
+    if (!anchor) continue;
+    std::erase_if(term.residuals, [&](const LandmarkResidual& residual) {
+      return residual.seen.state >= anchor->state && residual.seen != *anchor;
+    });
+  }
+  return cost;
+}
+
+/// A landmark in one of its views, at the point by the given intrinsics. The errors of a track are a random walk, so
+/// the view farthest from the anchor has almost all information on its depth.
+KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
+  const SE3 T_O_A = window.T_O_C(*feature.anchor);
+  const Eigen::Vector3d p_O = window.position(feature);
+  double share = std::numeric_limits<double>::infinity();  // of the inverse depth: its sigma
+  for (const auto& [other, observation] : feature.observations) {
+    if (other == *feature.anchor) continue;
+    const SE3 T_C_O = window.T_O_C(other).inverse();
+    const Eigen::Vector3d p_C = T_C_O * p_O, along_C = T_C_O.R() * (p_O - T_O_A.translation());
+    const Eigen::Vector2d by_share = (along_C.head<2>() - p_C.hnormalized() * along_C.z()) / p_C.z();
+    share = std::min(share, observation.sigma / std::max(by_share.norm(), 1e-12));
+  }
+  const double inverse_depth = 1.0 / (window.T_O_C(view).inverse() * p_O).z();
+  return {id, feature.observations.at(view).point, inverse_depth, share * std::abs(inverse_depth)};
+}
+
+/// Remaining keyframes keep a record of a landmark whose observations there are marginalized.
+void keep_points(Window& window, FeatureId id, const Feature& feature, const std::optional<ObservationKey>& anchor) {
+  for (const auto& [view, observation] : feature.observations) {
+    if (view.state == feature.anchor->state || (anchor && view.state >= anchor->state)) continue;
+    if (window.states().at(view.state).keyframe) window.keep_point(view, point_of(window, id, feature, view));
+  }
+}
+
+/// All points of a view by the intrinsics that belong to its T_B_C: some were kept when the estimates were others, and
+/// a shift of the principal point is a rotation of the camera.
+void correct_points(const Window& window, KeyframeRecord& record) {
+  for (std::size_t camera = 0; camera < record.views.size(); ++camera) {
+    if (window.intrinsics(camera).isZero(0.0)) continue;
+    const CameraModel model = window.model(camera);
+    for (KeyframePoint& point : record.views[camera].points)
+      point.point = point_by(model, window.cameras()[camera].given.model, point.point);
+  }
+}
+
+KeyframeRecord record_of(const Window& window, StateId id) {
+  const WindowState& state = window.states().at(id);
+  KeyframeRecord record{state.t, state.T_O_B(), {}};
+  for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
+    const SE3 T_B_C = record.T_W_B.inverse() * window.T_O_C({id, camera});
+    const auto kept = state.kept.find(camera);
+    record.views.push_back({window.cameras()[camera].given.name, T_B_C, {}});
+    if (kept != state.kept.end()) record.views.back().points = kept->second;
+  }
+  for (const auto& [feature_id, feature] : window.features()) {
+    if (!feature.anchor) continue;
+    for (auto seen = feature.observations.lower_bound({id, 0});
+         seen != feature.observations.end() && seen->first.state == id; ++seen) {
+      record.views[seen->first.camera].points.push_back(point_of(window, feature_id, feature, seen->first));
+    }
+  }
+  correct_points(window, record);
+  return record;
+}
+
+}  // namespace
+
+void drop_or_promote(Window& window, StateId id, double max_interval_s) {
+  const auto state = window.states().find(id), next = std::next(state);
+  Preintegration joined = state->second.imu.joined(next->second.imu);
+  const bool rested = state->second.rested && next->second.rested;
+  // The begin and the end of a standstill are kept: an interval joined across one would lose the standstill factor.
+  const bool between = state->second.rested != next->second.rested;
+  if (between || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
+    window.make_keyframe(id);
+  } else {
+    window.drop_state(id, std::move(joined));
+  }
+}
+
+KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
+  const StateId id = window.oldest_id();
+  KeyframeRecord record = record_of(window, id);
+  std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
+  for (const BlockKey& scalar : window.walking()) leaving.insert(scalar);
+  const Inherited inherited = inherited_landmarks(window);
+  for (const auto& [feature_id, anchor] : inherited) {
+    keep_points(window, feature_id, window.features().at(feature_id), anchor);
+  }
+  Cost cost = cost_leaving(window, leaving, inherited);
+  const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
+  for (const BlockKey& scalar : window.walking()) {
+    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.begin_piece(scalar.kind, dt_s)));
+  }
+  std::map<FeatureId, NewAnchor> anchors;
+  for (const auto& [feature_id, anchor] : inherited) {
+    if (!anchor) continue;
+    const auto there = inverse_depth_in(window, *anchor, window.position(window.features().at(feature_id)), config);
+    if (there) anchors.emplace(feature_id, NewAnchor{*anchor, *there});
+  }
+  window.drop_oldest(marginalize(window, cost, leaving), anchors);
+  return record;
+}
+
+void forget_walk(Window& window, BlockKind kind) {
+  std::set<BlockKey> leaving;
+  for (const BlockKey& key : window.prior()->blocks()) {
+    if (key.kind == kind) leaving.insert(key);
+  }
+  const Cost known{window.prior(), {}, {}};
+  window.end_walk(kind, leaving.empty() ? window.prior()->prior() : marginalize(window, known, leaving));
+}
+
+}  // namespace edged

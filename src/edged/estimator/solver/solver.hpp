@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Solves the window: Gauss-Newton with inverse depths eliminated, damped if a step does not decrease the cost.
+#pragma once
+
+#include "edged/estimator/window/window.hpp"
+
+namespace edged {
+
+struct SolveSummary {
+  double initial_cost = 0.0, final_cost = 0.0;
+  int iterations = 0;   ///< steps tried
+  bool usable = false;  ///< the cost is defined at the present values
+};
+
+/// Minimises the sum of the window's terms over all its blocks, in place. One thread; deterministic.
+SolveSummary solve(Window& window, int max_iterations);
+
+}  // namespace edged
