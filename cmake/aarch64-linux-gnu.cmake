@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 # Toolchain for 64-bit ARM with Debian's g++-aarch64-linux-gnu. EDGED_SYSROOT names a folder with the libraries of an
-# arm64 Debian 12 (scripts/test_arm64.sh makes one):
+# arm64 Debian 12:
 #   cmake --toolchain cmake/aarch64-linux-gnu.cmake -DEDGED_SYSROOT=/path -DEDGED_PYTHON=OFF -DEDGED_TESTS=OFF ...
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)

@@ -47,7 +47,7 @@ class Bench(unittest.TestCase):
 
     def test_every_benchmark_tells_what_it_does(self):
         for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "speed", "starts",
-                     "tracks", "verdicts", "../tests/stress"):
+                     "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
     def test_stress_judges_a_run_by_what_is_expected_of_its_disturbance(self):
