@@ -14,7 +14,6 @@ z up; B the body, which is the IMU: T_W_B maps points of B to W. Quaternions are
 import json as _json
 import pathlib as _pathlib
 import sys as _sys
-import warnings as _warnings
 
 import numpy as _numpy
 
@@ -49,34 +48,6 @@ __all__ = [
 
 for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, LoopClosure, Measurement, Odometry, RecordedCamera, Recording, RecordingInfo, State, Status, Step):
     _class.__module__ = __name__
-
-
-def _deprecated(owner, old, new):
-    """`owner.old` still works for one version, with a warning that names `new`."""
-    def get(self):
-        _warnings.warn(f"{owner.__name__}.{old} is deprecated: use {new}", DeprecationWarning, stacklevel=2)
-        return getattr(self, new)
-    setattr(owner, old, property(get))
-
-
-_DEPRECATED = (  # owner, deprecated name, its replacement; the stub leaves them out
-    (CameraStep, "survival", "survival_rate"),  # deprecated
-    (CameraStep, "drawn", "rendered"),  # deprecated
-    (Step, "event_survival", "event_track_survival_rate"),  # deprecated
-    (Step, "frame_survival", "frame_track_survival_rate"),  # deprecated
-    (Step, "drawn", "rendered"),  # deprecated
-    (Step, "found_again", "relocalized"),  # deprecated
-    (Odometry, "elsewhere", "awaiting_relocalization"),  # deprecated
-    (Odometry, "hindsight", "final_trajectory"))  # deprecated
-for _alias in _DEPRECATED:
-    _deprecated(*_alias)
-
-
-def __getattr__(name):
-    if name == "Hindsight":  # deprecated
-        _warnings.warn("edged.Hindsight is deprecated: use FinalTrajectory", DeprecationWarning, stacklevel=2)  # deprecated
-        return FinalTrajectory
-    raise AttributeError(f"module 'edged' has no attribute {name!r}")
 
 
 def _rows(dtype, **columns):

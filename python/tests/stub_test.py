@@ -6,7 +6,6 @@ import inspect
 import pathlib
 
 import edged
-import pytest
 
 STUB = ast.parse(pathlib.Path(edged.__file__).with_name("__init__.pyi").read_text())
 DEFINITIONS = (ast.ClassDef, ast.FunctionDef)
@@ -44,19 +43,7 @@ def test_every_member_of_a_class_is_in_the_stub_and_the_other_way_round():
             continue
         mine = {member for member in vars(found) if not member.startswith("_") or member in ("__iter__", "__next__")}
         of_enums = {"name", "value"} if name == "Status" else set()
-        deprecated = {old for owner, old, _ in edged._DEPRECATED if owner is found}
-        assert mine - of_enums - deprecated == members_of(name) - OF_EVERY_CLASS, name
-
-
-def test_deprecated_names_give_what_replaces_them_with_a_warning():
-    odometry = edged.Odometry("davis240c_ecd")
-    with pytest.warns(DeprecationWarning, match="awaiting_relocalization"):
-        assert odometry.elsewhere is False
-    with pytest.warns(DeprecationWarning, match="final_trajectory"):
-        assert len(odometry.hindsight().poses) == 0
-    with pytest.warns(DeprecationWarning, match="FinalTrajectory"):
-        assert edged.Hindsight is edged.FinalTrajectory
-    assert all(hasattr(owner, new) for owner, _, new in edged._DEPRECATED)
+        assert mine - of_enums == members_of(name) - OF_EVERY_CLASS, name
 
 
 def test_every_argument_of_a_function_written_in_python_is_in_the_stub():

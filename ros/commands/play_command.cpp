@@ -15,7 +15,7 @@
 #include "common/status_line.hpp"
 #include "dds/player.hpp"
 #include "edged/core/check.hpp"
-#include "ros2/ros2_options.hpp"
+#include "commands/ros2_options.hpp"
 
 namespace edged {
 namespace {

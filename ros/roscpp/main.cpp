@@ -12,8 +12,8 @@
 
 #include "edged/core/check.hpp"
 #include "node/node.hpp"
-#include "parameters.hpp"
-#include "ros1_transport.hpp"
+#include "roscpp/parameters.hpp"
+#include "roscpp/ros1_transport.hpp"
 
 namespace edged::ros1 {
 namespace {

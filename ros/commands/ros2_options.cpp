@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "ros2/ros2_options.hpp"
+#include "commands/ros2_options.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -12,7 +12,7 @@
 namespace edged::ros2 {
 namespace {
 
-// ros2/tests/type_hash_test.py computes the hashes from the definitions in ros2/tests/messages.idl.
+// ros/dds/tests/type_hash_test.py computes the hashes from the definitions in ros/dds/tests/messages.idl.
 constexpr std::array kTypes = {
     MessageType{"diagnostic_msgs/DiagnosticArray", "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
     MessageType{"event_camera_msgs/EventPacket", "d6fa176260b1f37e5a40845305315e150a0f18191241eb64f407442aa29844aa"},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "ros1_transport.hpp"
+#include "roscpp/ros1_transport.hpp"
 
 #include <ros/serialization.h>
 

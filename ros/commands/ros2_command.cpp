@@ -16,7 +16,7 @@
 #include "dds/ros2_transport.hpp"
 #include "edged/core/check.hpp"
 #include "node/node.hpp"
-#include "ros2/ros2_options.hpp"
+#include "commands/ros2_options.hpp"
 
 namespace edged {
 namespace {

@@ -88,12 +88,12 @@ def type_hash(types, name):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    types = read_types((root / "ros2/tests/messages.idl").read_text())
+    types = read_types((root / "ros/dds/tests/messages.idl").read_text())
     if "--print" in sys.argv:
         for name in types:
             print(f'    MessageType{{"{name.replace("/msg/", "/")}", "{type_hash(types, name)}"}},')
         return
-    source = (root / "ros2/dds/names.cpp").read_text()
+    source = (root / "ros/dds/names.cpp").read_text()
     ours = {name.replace("/", "/msg/"): value
             for name, value in re.findall(r'MessageType\{"([\w/]+)",\s*"([0-9a-f]{64})"\}', source)}
     assert len(ours) > 10, ours
