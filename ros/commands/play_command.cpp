@@ -9,13 +9,13 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "commands/ros2_options.hpp"
 #include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "dds/player.hpp"
 #include "edged/core/check.hpp"
-#include "commands/ros2_options.hpp"
 
 namespace edged {
 namespace {

@@ -10,13 +10,13 @@
 #include <string>
 
 #include "commands.hpp"
+#include "commands/ros2_options.hpp"
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
 #include "dds/ros2_transport.hpp"
 #include "edged/core/check.hpp"
 #include "node/node.hpp"
-#include "commands/ros2_options.hpp"
 
 namespace edged {
 namespace {
