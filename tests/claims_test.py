@@ -14,9 +14,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def all_files():
-    for folder, inner, files in os.walk(ROOT):
-        inner[:] = [name for name in inner if name not in (".git", "__pycache__", "build")]
-        yield from (str(pathlib.Path(folder, file).relative_to(ROOT)) for file in files)
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if tracked.returncode == 0:
+        return [file for file in tracked.stdout.splitlines() if (ROOT / file).is_file()]
+    return [str(path.relative_to(ROOT)) for path in ROOT.rglob("*") if path.is_file()]  # sources without their history
 
 
 FILES = sorted(all_files())
@@ -34,11 +35,12 @@ FOREIGN = re.compile("|".join((
     r"T_cam0_cam\d|T_10|T_W_B_of|cam_to_cam\.yaml|colmap|images/left/distorted|_ts|debian/",  # data sets
 )))
 
+
 @functools.lru_cache(None)
 def sources():
     own = pathlib.Path(__file__).name
     return "\n".join((ROOT / file).read_text(errors="replace") for file in FILES
-                     if not file.endswith((*BINARY, own)) and (ROOT / file).is_file())
+                     if not file.endswith((*BINARY, own)))
 
 
 @functools.lru_cache(None)
