@@ -100,7 +100,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* simulate = app.add_subcommand("simulate", "Make a recording with ground truth: events, frames and IMU");
   simulate->add_option("--preset", options->preset, "What is simulated: see below")
       ->type_name("PRESET")
-      ->check(CLI::IsMember(simulator_presets()).description(""))
+      ->check([](std::string name) { return CLI::IsMember(simulator_presets())(name); }, "")
       ->capture_default_str();
   simulate->add_option("--seed", options->seed, "Another flight, other noise [1]");
   simulate->add_option("--duration", options->duration_s, "Length [s] [that of the preset]");
@@ -115,14 +115,16 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
   simulate->add_flag("--quiet", options->quiet, "No status line");
   simulate->add_flag("--json", options->json, "Print the summary as JSON");
-  std::string presets = "Presets:\n";
-  for (const std::string& name : simulator_presets())
-    presets += fmt::format("  {:<20} {}\n", name, preset_summary(name));
-  simulate->footer(presets +
-                   "\nExamples:\n"
-                   "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
-                   "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
-                   "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered");
+  simulate->footer([] {
+    std::string presets = "Presets:\n";
+    for (const std::string& name : simulator_presets())
+      presets += fmt::format("  {:<20} {}\n", name, preset_summary(name));
+    return presets +
+           "\nExamples:\n"
+           "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
+           "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
+           "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered";
+  });
   simulate->callback([options, list, &chosen] {
     chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };
   });

@@ -72,7 +72,8 @@ class Installed(unittest.TestCase):
         # The library itself prints nothing, although it starts on the way.
         self.assertRegex(call(build / "sensors", env=self.environment), r"^waiting for: .*\n[0-9]+ steps\n$")
         # A program elsewhere is told where rigs are.
-        rigs = {**self.environment, "EDGED_RIGS": str(self.prefix / "share" / "edged" / "rigs")}
+        rigs = {**self.environment, "EDGED_RIGS": str(self.prefix / "share" / "edged" / "rigs"),
+                "EDGED_PRESETS": str(self.prefix / "share" / "edged" / "presets")}
         told = call(build / "fly", env=rigs)
         self.assertIn("Good, ", told)
         self.assertNotIn(" 0 rigs", told)

@@ -31,9 +31,10 @@ def a_wheel(tmp_path_factory):
     return next(folder.glob("edged-*.whl"))
 
 
-def test_the_wheel_holds_module_program_rigs_and_networks(wheel):
+def test_the_wheel_holds_module_program_rigs_presets_and_networks(wheel):
     names = zipfile.ZipFile(wheel).namelist()
-    assert {"edged/__init__.py", "edged/__init__.pyi", "edged/bin/edged", "edged/share/edged/rigs/davis240c_ecd.yaml"} <= set(names)
+    assert {"edged/__init__.py", "edged/__init__.pyi", "edged/bin/edged", "edged/share/edged/rigs/davis240c_ecd.yaml",
+            "edged/share/edged/presets/room.yaml"} <= set(names)
     assert any(name.startswith("edged/_edged.") for name in names)
     assert any(name.startswith("edged/share/edged/depth/") for name in names)
 

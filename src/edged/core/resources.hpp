@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Files that come with the program and are read when it runs: calibrations of known rigs, networks.
+// Files that come with the program and are read when it runs: calibrations of known rigs, networks, presets of the
+// simulator.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +12,10 @@
 
 namespace edged {
 
-/// The existing folders of one kind ("rigs", "depth"), best first: the one that the environment names (EDGED_RIGS,
-/// EDGED_DEPTH), share/edged/KIND beside the folder of the running program, share/edged/KIND in the folder of the
-/// shared library (a wheel of Python), and that of the installation that the library was built for.
+/// The existing folders of one kind ("rigs", "depth", "presets"), best first: the one that the environment names
+/// (EDGED_RIGS, EDGED_DEPTH, EDGED_PRESETS), share/edged/KIND beside the folder of the running program,
+/// share/edged/KIND in the folder of the shared library (a wheel of Python), and that of the installation that the
+/// library was built for.
 std::vector<std::filesystem::path> resource_folders(std::string_view kind);
 
 /// The files with this extension (".yaml") in these folders, by name; of equal names that of the better folder.

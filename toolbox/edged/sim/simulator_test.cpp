@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/sim/simulator.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/test_support.hpp"
 #include "edged/sim/disturbance.hpp"
 #include "edged/sim/test_recording.hpp"
 
@@ -138,12 +140,11 @@ TEST(Simulator, ThePresetHandheldWildTurnsByUpToTenRadiansASecond) {
 }
 
 TEST(Simulator, PresetsOfFlightsAreTheElevenOfThePaper) {
-  const std::vector<std::string> eleven{"circle",     "aggressive",  "aggressive-lowlit", "square",
-                                        "line",       "turned",      "low-lit",           "30-percent",
-                                        "60-percent", "dynamic-hdr", "constant-hdr"};
-  EXPECT_EQ(flight_presets(), eleven);
-  for (const std::string& name : flight_presets()) {
-    EXPECT_NE(std::find(simulator_presets().begin(), simulator_presets().end(), name), simulator_presets().end());
+  std::vector<std::string> last = simulator_presets();
+  EXPECT_EQ(last.front(), "room");
+  last.erase(last.begin(), last.end() - std::ssize(kPaperFlights));
+  EXPECT_EQ(last, kPaperFlights);
+  for (const std::string& name : kPaperFlights) {
     const SimulatorConfig config = simulator_preset(name);
     EXPECT_EQ(config.name, name);
     EXPECT_EQ(config.camera.width, 346);
@@ -153,6 +154,34 @@ TEST(Simulator, PresetsOfFlightsAreTheElevenOfThePaper) {
   }
   for (const char* dark : {"low-lit", "aggressive-lowlit"})
     EXPECT_LT(simulator_preset(dark).scene.light, 0.1 * simulator_preset("30-percent").scene.light) << dark;
+}
+
+TEST(Simulator, AFileIsAPresetThatDiffersFromItsBase) {
+  const TempFolder folder;
+  folder.write("mine.yaml", "summary: mine\nbase: circle\nscene: {light: 0.5}\n");
+  folder.write("wrong.yaml", "motion: {hight: 2}\n");
+  folder.write("turned-off.yaml", "T_B_C: 1 0 0\n");
+  folder.write("endless.yaml", "base: endless\n");
+  ::setenv("EDGED_PRESETS", folder.path().c_str(), 1);
+  EXPECT_EQ(preset_summary("mine"), "mine");
+  SimulatorConfig mine = simulator_preset("mine"), circle = simulator_preset("circle");
+  EXPECT_EQ(mine.name, "mine");
+  EXPECT_EQ(mine.scene.light, 0.5);
+  EXPECT_EQ(mine.T_B_C.matrix(), circle.T_B_C.matrix());
+  mine.scene.light = circle.scene.light;
+  EXPECT_EQ(ConfigFields::of(mine).to_yaml(), ConfigFields::of(circle).to_yaml());
+  const auto told = [](const char* preset) -> std::string {
+    try {
+      simulator_preset(preset);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(told("wrong"), testing::HasSubstr("wrong.yaml:1: unknown option 'motion.hight'"));
+  EXPECT_THAT(told("turned-off"), testing::HasSubstr("T_B_C must be three rows of four numbers"));
+  EXPECT_THAT(told("endless"), testing::HasSubstr("endless.yaml: its bases have no end"));
+  ::unsetenv("EDGED_PRESETS");
 }
 
 TEST(Simulator, StampsFramesInTheMiddleOfExposuresThatAdaptToTheLight) {

@@ -13,6 +13,11 @@
 
 namespace edged {
 
+/// The flights of the paper's Table III, in its order.
+inline const std::vector<std::string> kPaperFlights{"circle",     "aggressive",  "aggressive-lowlit", "square",
+                                                    "line",       "turned",      "low-lit",           "30-percent",
+                                                    "60-percent", "dynamic-hdr", "constant-hdr"};
+
 /// All measurements of a recording, by sensor.
 struct Recorded {
   std::vector<Event> events;

@@ -152,6 +152,7 @@ Path path_of(Manoeuvre manoeuvre) {
   EDGED_CHECK(false, "manoeuvre {} has no path", static_cast<int>(manoeuvre));
 }
 
+/// From take-off to touch-down [s].
 double airborne_s(const Path& path) { return kTakeOff_s + kHover_s + path.duration_s + kHover_s + kLanding_s; }
 
 /// The effect of gusts and controller: per axis two sines of random phase, within [-1, 1].
@@ -234,7 +235,5 @@ Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed) {
     poses.push_back({timestamp_from_seconds(i / kRate), drone.pose(i / kRate)});
   return poses;
 }
-
-double airborne_s(Manoeuvre manoeuvre) { return airborne_s(path_of(manoeuvre)); }
 
 }  // namespace edged

@@ -15,7 +15,4 @@ namespace edged {
 /// determines the wobble of the drone. manoeuvre: not None.
 Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed);
 
-/// From take-off to touch-down [s].
-double airborne_s(Manoeuvre manoeuvre);
-
 }  // namespace edged

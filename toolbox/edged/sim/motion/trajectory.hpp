@@ -62,9 +62,6 @@ class ContinuousTrajectory {
   Kinematics at(double t) const;
   double duration() const { return rest_s_ + 0.5 * blend_s_ + spline_.duration(); }
 
-  /// The offset to be added to t after the blend, to get seconds since the first sample.
-  double sample_shift() const { return -rest_s_ - 0.5 * blend_s_; }
-
  private:
   PoseSpline spline_;
   double rest_s_, blend_s_;

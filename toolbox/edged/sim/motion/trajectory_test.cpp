@@ -148,7 +148,7 @@ TEST(RecordedMotion, StaysCloseToItsSourceWithSaneAccelerations) {
     const auto first =
         std::find_if(source.begin(), source.end(), [&](const StampedPose& pose) { return pose.t >= begin; });
     for (const StampedPose& pose : source) {
-      const double t = to_seconds(pose.t - first->t) - trajectory.sample_shift();
+      const double t = to_seconds(pose.t - first->t) + config.rest_s + 0.5 * config.blend_s;
       if (t < 2.0 || t > 20.0) continue;
       const Kinematics k = trajectory.at(t);
       squares += (k.T_W_B.translation() - pose.T.translation()).squaredNorm();

@@ -150,7 +150,7 @@ struct ExternalErrors {
   double noise = 0.0;          ///< standard deviation of a sample
   double walk = 0.0;           ///< random walk of the offset, per square root of a second
   double scale_error = 0.0;    ///< reads (1 + scale_error) times the truth
-  double outlier_share = 0.0;  ///< of the samples
+  double outlier_share = 0.0;  ///< share of the samples
   double outlier = 0.0;        ///< standard deviation of these
   double gap_at_s = 0.0, gap_s = 0.0;
   double late_ms = 0.0;  ///< stamped so long after they were measured
@@ -177,12 +177,13 @@ struct ExternalModelConfig {
   VelocityModelConfig velocity;
 };
 
-/// Of the sensors: LensCovered, FramesMissing, EventsMissing, ImuGap and EventStorm (noise on the whole array). Of the
-/// scene: LightsOff, Person (walks past right before the camera), Walkers (two people cross the view again and again),
-/// WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the scene; the latter's also
-/// goes on and off), BlankWall (half of the room is painted white and bare, and the camera turns round to it) and
-/// Flicker (lamps on mains or with PWM, FlickerConfig). Of the motion: GyroSaturation (a turn beyond the gyro's range
-/// and back), Shake, PureRotation, Standstill and PutDown (a standstill that begins and ends with a knock).
+/// What goes wrong. Of the sensors: LensCovered, FramesMissing, EventsMissing, ImuGap and EventStorm (noise on the
+/// whole array). Of the scene: LightsOff, Person (walks past right before the camera), Walkers (two people cross the
+/// view again and again), WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the
+/// scene; the latter's also goes on and off), BlankWall (half of the room is painted white and bare, and the camera
+/// turns round to it) and Flicker (lamps on mains or with PWM, FlickerConfig). Of the motion: GyroSaturation (a turn
+/// beyond the gyro's range and back), Shake, PureRotation, Standstill and PutDown (a standstill that begins and ends
+/// with a knock).
 enum class DisturbanceKind {
   None,
   LensCovered,
@@ -240,7 +241,7 @@ struct FlickerConfig {
 
 /// Every number of a simulation. The defaults are the preset "room"; simulator_preset gives the others.
 struct SimulatorConfig {
-  std::string name = "room";  ///< of the preset it started from; only a label
+  std::string name = "room";  ///< name of the preset it started from; only a label
   int seed = 1;
   double duration_s = 20.0;
   double max_motion_px = 0.5;
@@ -263,22 +264,21 @@ struct SimulatorConfig {
   /// A further camera on the same flight through the same scene, which are designed for the one at T_B_C.
   struct Mount {
     SE3 T_C_M;           ///< its pose relative to that
-    std::string suffix;  ///< of its cameras' names; with one its noise is its own
+    std::string suffix;  ///< appended to its cameras' names; with one its noise is its own
   };
   Mount mount;
   SE3 T_B_M() const { return T_B_C * mount.T_C_M; }
 };
 
-/// One of simulator_presets(). Throws InputError that lists them.
+/// A file presets/NAME.yaml (core/resources.hpp); "room" is there without one. Throws InputError that lists
+/// simulator_presets().
 SimulatorConfig simulator_preset(const std::string& name);
 
-/// What one of simulator_presets() simulates, in a line.
-std::string_view preset_summary(const std::string& name);
+/// What a preset simulates, in a line.
+std::string preset_summary(const std::string& name);
 
-/// A DAVIS240C in the hand ("room" is the default), then flight_presets().
-const std::vector<std::string>& simulator_presets();
-
-/// The eleven flights of the paper's Table III in its order: a DAVIS346 on a quadrotor in a hall.
-const std::vector<std::string>& flight_presets();
+/// The names of all presets: a DAVIS240C in the hand, then the eleven flights of the paper's Table III in its order (a
+/// DAVIS346 on a quadrotor in a hall), then what a user adds.
+std::vector<std::string> simulator_presets();
 
 }  // namespace edged
