@@ -22,50 +22,32 @@ constexpr double kLowering_s = 0.5;
 
 constexpr double kToTheEnd = -1.0;
 
-struct Usual {
-  double length_s, strength;
+/// A kind of disturbance and its usual length and strength, in the order of DisturbanceKind.
+struct KindRow {
+  std::string_view name;
+  DisturbanceKind kind;
+  double length_s = 0.0, strength = 0.0;
 };
 
-Usual usual(DisturbanceKind kind) {
-  switch (kind) {
-    case DisturbanceKind::None:
-      return {0.0, 0.0};
-    case DisturbanceKind::LensCovered:
-      return {2.0, 0.0};
-    case DisturbanceKind::LightsOff:
-      return {2.0, 0.03};  // share of the light that is left
-    case DisturbanceKind::FramesMissing:
-      return {5.0, 0.0};
-    case DisturbanceKind::EventsMissing:
-      return {1.0, 0.0};
-    case DisturbanceKind::ImuGap:
-      return {0.3, 0.0};
-    case DisturbanceKind::GyroSaturation:
-      return {1.0, 1.5};  // peak rate relative to the range of the gyro
-    case DisturbanceKind::Shake:
-      return {1.0, 400.0};  // peak rate [deg/s]
-    case DisturbanceKind::Person:
-      return {2.5, 0.0};
-    case DisturbanceKind::Walkers:
-      return {kToTheEnd, 0.4};  // share of the view
-    case DisturbanceKind::WanderingLamp:
-    case DisturbanceKind::SwitchingLamp:
-      return {kToTheEnd, 7.5};  // relative to the light of a well lit room
-    case DisturbanceKind::BlankWall:
-      return {4.0, 0.0};
-    case DisturbanceKind::PureRotation:
-      return {5.0, 0.0};
-    case DisturbanceKind::Standstill:
-      return {60.0, 0.0};
-    case DisturbanceKind::PutDown:
-      return {10.0, 2.0};  // peak of the knocks [g]
-    case DisturbanceKind::EventStorm:
-      return {0.3, 20.0};  // million events a second
-    case DisturbanceKind::Flicker:
-      return {kToTheEnd, 0.25};  // modulation
-  }
-  return {0.0, 0.0};
-}
+constexpr KindRow kKinds[] = {
+    {"none", DisturbanceKind::None},
+    {"lens-covered", DisturbanceKind::LensCovered, 2.0},
+    {"lights-off", DisturbanceKind::LightsOff, 2.0, 0.03},  // share of the light that is left
+    {"frames-missing", DisturbanceKind::FramesMissing, 5.0},
+    {"events-missing", DisturbanceKind::EventsMissing, 1.0},
+    {"imu-gap", DisturbanceKind::ImuGap, 0.3},
+    {"gyro-saturation", DisturbanceKind::GyroSaturation, 1.0, 1.5},  // peak rate relative to the range of the gyro
+    {"shake", DisturbanceKind::Shake, 1.0, 400.0},                   // peak rate [deg/s]
+    {"person", DisturbanceKind::Person, 2.5},
+    {"walkers", DisturbanceKind::Walkers, kToTheEnd, 0.4},               // share of the view
+    {"wandering-lamp", DisturbanceKind::WanderingLamp, kToTheEnd, 7.5},  // relative to a well lit room
+    {"switching-lamp", DisturbanceKind::SwitchingLamp, kToTheEnd, 7.5},
+    {"blank-wall", DisturbanceKind::BlankWall, 4.0},
+    {"pure-rotation", DisturbanceKind::PureRotation, 5.0},
+    {"standstill", DisturbanceKind::Standstill, 60.0},
+    {"put-down", DisturbanceKind::PutDown, 10.0, 2.0},        // peak of the knocks [g]
+    {"event-storm", DisturbanceKind::EventStorm, 0.3, 20.0},  // million events a second
+    {"flicker", DisturbanceKind::Flicker, kToTheEnd, 0.25}};  // modulation
 
 /// A function of time with two derivatives [1/s, 1/s^2].
 struct Jet {
@@ -96,7 +78,7 @@ Jet ring(double t) {
   return decay * sine * (Jet{1.0} + fading);
 }
 
-/// The same for a body at rest before, which is accelerated within a few milliseconds.
+/// Vibration of a body that was at rest before, and is accelerated within a few milliseconds.
 Jet hit(double t) { return ring(t) * to_jet(ramp(t, kBlow_s), t, kBlow_s); }
 
 /// Largest second derivative.
@@ -115,26 +97,9 @@ Ramp plateau(double t, double begin_s, double end_s, double ramp_s) {
 }  // namespace
 
 void Disturbance::visit(ConfigFields& fields) {
-  fields.choice("kind", kind,
-                {{"none", DisturbanceKind::None},
-                 {"lens-covered", DisturbanceKind::LensCovered},
-                 {"lights-off", DisturbanceKind::LightsOff},
-                 {"frames-missing", DisturbanceKind::FramesMissing},
-                 {"events-missing", DisturbanceKind::EventsMissing},
-                 {"imu-gap", DisturbanceKind::ImuGap},
-                 {"gyro-saturation", DisturbanceKind::GyroSaturation},
-                 {"shake", DisturbanceKind::Shake},
-                 {"person", DisturbanceKind::Person},
-                 {"walkers", DisturbanceKind::Walkers},
-                 {"wandering-lamp", DisturbanceKind::WanderingLamp},
-                 {"switching-lamp", DisturbanceKind::SwitchingLamp},
-                 {"blank-wall", DisturbanceKind::BlankWall},
-                 {"pure-rotation", DisturbanceKind::PureRotation},
-                 {"standstill", DisturbanceKind::Standstill},
-                 {"put-down", DisturbanceKind::PutDown},
-                 {"event-storm", DisturbanceKind::EventStorm},
-                 {"flicker", DisturbanceKind::Flicker}},
-                {.effect = "one thing that goes wrong"});
+  std::vector<std::pair<std::string_view, DisturbanceKind>> kinds;
+  for (const KindRow& row : kKinds) kinds.emplace_back(row.name, row.kind);
+  fields.choice("kind", kind, kinds, {.effect = "one thing that goes wrong"});
   fields.add("at_s", at_s, {"s", 0, 3600, "when it begins, on the camera's clock"});
   fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: as usual for its kind"});
   fields.add(
@@ -147,10 +112,11 @@ void Disturbance::visit(ConfigFields& fields) {
 }
 
 Disturbance Disturbance::filled_in(double recording_s) const {
+  const KindRow& usual = kKinds[static_cast<std::size_t>(kind)];
   Disturbance filled = *this;
-  if (length_s == 0.0) filled.length_s = usual(kind).length_s;
+  if (length_s == 0.0) filled.length_s = usual.length_s;
   if (filled.length_s == kToTheEnd) filled.length_s = std::max(0.0, recording_s - at_s);
-  if (strength == 0.0) filled.strength = usual(kind).strength;
+  if (strength == 0.0) filled.strength = usual.strength;
   return filled;
 }
 

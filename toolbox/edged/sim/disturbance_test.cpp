@@ -170,17 +170,14 @@ double differing_share(const Rendering& a, const Rendering& b) {
   return static_cast<double>(count) / static_cast<double>(a.inverse_depth.size());
 }
 
-/// The share of the view that the disturbance covers, by the time of the frame [s].
-std::map<double, double> covered_shares(SimulatorConfig config) {
-  config.max_motion_px = 3.0;
-  Simulator with(config), without_one(undisturbed(config));
+/// The share of the view that the disturbance covers, by the time [s].
+std::map<double, double> covered_shares(const SimulatorConfig& config) {
+  const Simulator acting(config), calm(undisturbed(config));
+  Renderer with(config.camera.model(), acting.scene()), without(config.camera.model(), calm.scene());
   std::map<double, double> shares;
-  // The same renders: at least every 3 ms, and at the exposures of the frames.
-  while (const auto measurement = with.next()) {
-    if (!std::holds_alternative<Frame>(*measurement)) continue;
-    while (!std::holds_alternative<Frame>(*without_one.next())) continue;
-    if (with.rendered_until() != without_one.rendered_until()) continue;
-    shares[to_seconds(with.rendered_until())] = differing_share(with.last_rendering(), without_one.last_rendering());
+  for (double t = 0.0; t < config.duration_s; t += 1.0 / config.frames.rate_hz) {
+    const SE3 T_W_C = acting.trajectory().at(t).T_W_B * config.T_B_C;
+    shares[t] = differing_share(with.render(T_W_C, t), without.render(T_W_C, t));
   }
   return shares;
 }

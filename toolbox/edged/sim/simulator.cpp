@@ -167,7 +167,7 @@ class Simulator::Impl {
   const DisturbedTrajectory& trajectory() const { return trajectory_; }
   std::size_t renderings() const { return renderings_; }
   Timestamp rendered_until() const { return t_.value_or(Timestamp()); }
-  const Renderer& renderer() const { return renderer_; }
+  const Scene& scene() const { return renderer_.scene(); }
 
  private:
   void advance();
@@ -385,7 +385,6 @@ Calibration Simulator::calibration() const { return impl_->calibration(); }
 const DisturbedTrajectory& Simulator::trajectory() const { return impl_->trajectory(); }
 std::size_t Simulator::renderings() const { return impl_->renderings(); }
 Timestamp Simulator::rendered_until() const { return impl_->rendered_until(); }
-const Rendering& Simulator::last_rendering() const { return impl_->renderer().last(); }
-const Scene& Simulator::scene() const { return impl_->renderer().scene(); }
+const Scene& Simulator::scene() const { return impl_->scene(); }
 
 }  // namespace edged

@@ -12,7 +12,7 @@ namespace edged {
 
 /// The flicker at one instant.
 struct FlickerNow {
-  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< of the one lamp that flickers
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< place of the one lamp that flickers
   float deviation = 0.0F;                            ///< its light over its mean, minus one
   float reach = 0.0F;                                ///< [m]; 0: all lamps flicker together
 

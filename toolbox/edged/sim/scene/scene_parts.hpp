@@ -51,7 +51,7 @@ struct Scene {
   std::vector<DynamicObject> dynamic_objects;
   std::optional<Lighting> lighting;    ///< none: light 1 everywhere
   std::optional<Spotlight> spotlight;  ///< in addition
-  std::optional<Flicker> flicker;      ///< of all of this
+  std::optional<Flicker> flicker;      ///< flicker of all these lights
 };
 
 }  // namespace edged

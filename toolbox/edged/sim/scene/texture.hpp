@@ -39,7 +39,7 @@ class Texture {
 /// Noise of many octaves with checkers, strokes, discs, polygons and letters: corners at all scales.
 Texture make_rich_texture(int size, Random& random);
 
-/// The same with fewer marks: a painted wall.
+/// A painted wall: fewer marks than make_rich_texture.
 Texture make_plain_texture(int size, Random& random);
 
 /// White with a few dark polygons, discs and stars, none touching another.

@@ -32,7 +32,7 @@ std::uint8_t grey_level(double electrons, double read_noise, double electrons_pe
 
 namespace {
 
-/// Of the pixels, row by row.
+/// Gains of the pixels, row by row.
 std::vector<double> gains(const FrameCameraConfig& config, int width, int height, std::uint64_t seed) {
   Random random(seed, 31);
   const Eigen::Vector2d middle(0.5 * (width - 1), 0.5 * (height - 1));

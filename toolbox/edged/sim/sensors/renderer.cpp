@@ -3,53 +3,14 @@
 #include "edged/sim/sensors/renderer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace edged {
 namespace {
 
-constexpr int kMotionStride = 4;
-constexpr int kBlock = 16;  // [px] side
 constexpr float kBackground = 0.5F;
-constexpr double kNear = 0.02;  // [m]
-
-/// Extent on the unit plane of the part of a quadrangle that lies beyond the near plane.
-struct Extent {
-  double x_0 = std::numeric_limits<double>::infinity(), x_1 = -x_0, y_0 = x_0, y_1 = -x_0;
-  void add(const Eigen::Vector3d& p_C) {
-    const double x = p_C.x() / p_C.z(), y = p_C.y() / p_C.z();
-    x_0 = std::min(x_0, x), x_1 = std::max(x_1, x), y_0 = std::min(y_0, y), y_1 = std::max(y_1, y);
-  }
-};
-
-Extent project_extent(const Face& face, const SE3& T_C_W) {
-  std::array<Eigen::Vector3d, 4> corners;
-  constexpr std::array<std::array<double, 2>, 4> kSigns{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-  for (std::size_t i = 0; i < 4; ++i)
-    corners[i] =
-        T_C_W * (face.centre_W + kSigns[i][0] * face.half_u * face.u_W + kSigns[i][1] * face.half_v * face.v_W);
-  Extent extent;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector3d &a = corners[i], &b = corners[(i + 1) % 4];
-    if (a.z() > kNear) extent.add(a);
-    if ((a.z() > kNear) != (b.z() > kNear)) extent.add(a + (kNear - a.z()) / (b.z() - a.z()) * (b - a));
-  }
-  return extent;
-}
-
-/// First and last index whose [low, high] overlaps [from, to]. low and high need not be sorted.
-std::pair<int, int> overlap(const std::vector<float>& low, const std::vector<float>& high, double from, double to) {
-  const int n = static_cast<int>(low.size());
-  const auto meets = [&](int i) {
-    return high[static_cast<std::size_t>(i)] >= from && low[static_cast<std::size_t>(i)] <= to;
-  };
-  int first = 0, last = n - 1;
-  while (first < n && !meets(first)) ++first;
-  while (last >= first && !meets(last)) --last;
-  return {first, last};
-}
 
 /// The lamps with the power that varnish reflects, in the camera frame.
 std::vector<Lamp> highlights_at(const Lighting& lighting, const SE3& T_C_W, double t_s) {
@@ -63,61 +24,15 @@ std::vector<Lamp> highlights_at(const Lighting& lighting, const SE3& T_C_W, doub
   return highlights;
 }
 
-}  // namespace
+/// A pixel sees a face where five linear forms of its bearing are positive: inverse depth, and the distances from
+/// the four sides. Bearings of a wide lens are unit vectors: the margin `least` is far beyond rounding errors.
+struct Condition {
+  Eigen::Vector3f form;
+  float least;
+};
+using Conditions = std::array<Condition, 5>;
 
-Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual, double flare)
-    : width_(camera.width()),
-      height_(camera.height()),
-      focal_(static_cast<float>(camera.mean_focal())),
-      wide_(camera.view_limit().has_value()),
-      scene_(std::move(scene)),
-      flare_(static_cast<float>(flare)),
-      light_(scene_) {
-  const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  constexpr float kMax = std::numeric_limits<float>::max();
-  row_min_y_.assign(static_cast<std::size_t>(height_), kMax), row_max_y_.assign(row_min_y_.size(), -kMax);
-  column_min_x_.assign(static_cast<std::size_t>(width_), kMax), column_max_x_.assign(column_min_x_.size(), -kMax);
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const Eigen::Vector2d pixel = Eigen::Vector2d(x, y) + residual.at(Eigen::Vector2d(x, y));
-      const Eigen::Vector3d ray = camera.pixel_to_ray(pixel);
-      const Eigen::Vector2d point = ray.head<2>();
-      const float bx = static_cast<float>(point.x()), by = static_cast<float>(point.y());
-      bearing_x_.push_back(bx), bearing_y_.push_back(by), bearing_z_.push_back(static_cast<float>(ray.z()));
-      bearing_norm_.push_back(ray.cast<float>().norm());
-      const std::size_t row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
-      row_min_y_[row] = std::min(row_min_y_[row], by), row_max_y_[row] = std::max(row_max_y_[row], by);
-      column_min_x_[column] = std::min(column_min_x_[column], bx),
-      column_max_x_[column] = std::max(column_max_x_[column], bx);
-      if (wide_ || x % kMotionStride != 0 || y % kMotionStride != 0) continue;
-      constexpr double kStep = 1e-5;
-      Eigen::Matrix2d slope;
-      slope.col(0) = (camera.distort_to_pixel(point + Eigen::Vector2d(kStep, 0)) - pixel) / kStep;
-      slope.col(1) = (camera.distort_to_pixel(point + Eigen::Vector2d(0, kStep)) - pixel) / kStep;
-      pixel_per_point_.push_back(slope.cast<float>());
-    }
-  }
-  if (wide_) make_blocks();
-  views_.resize(scene_.faces.size());
-  seen_.resize(n), scratch_.resize(n), out_.radiance.resize(n), out_.inverse_depth.resize(n);
-}
-
-void Renderer::make_blocks() {
-  for (int y = 0; y < height_; y += kBlock) {
-    for (int x = 0; x < width_; x += kBlock) {
-      Block block{{x, std::min(x + kBlock, width_) - 1, y, std::min(y + kBlock, height_) - 1}, {}};
-      for (int row = y; row <= block.pixels.y_1; ++row) {
-        for (int column = x; column <= block.pixels.x_1; ++column) {
-          const std::size_t i = static_cast<std::size_t>(row * width_ + column);
-          block.bearings.extend(Eigen::Vector3f(bearing_x_[i], bearing_y_[i], bearing_z_[i]));
-        }
-      }
-      blocks_.push_back(block);
-    }
-  }
-}
-
-Renderer::Conditions Renderer::conditions_of(const View& view) {
+Conditions conditions_of(const FaceView& view) {
   const auto condition = [](const Eigen::Vector3f& form, float length) { return Condition{form, -1e-5F * length}; };
   const Eigen::Vector3f &a = view.inverse_depth, edge_u = view.half_u * a, edge_v = view.half_v * a;
   const float length_u = edge_u.norm() + view.u.norm(), length_v = edge_v.norm() + view.v.norm();
@@ -125,19 +40,25 @@ Renderer::Conditions Renderer::conditions_of(const View& view) {
           condition(edge_v - view.v, length_v), condition(edge_v + view.v, length_v)};
 }
 
-bool Renderer::may_see(const Block& block, const Conditions& conditions) {
+/// Whether any pixel of the block may see the face.
+bool may_see(const PixelBlock& block, const Conditions& conditions) {
   const Eigen::Array3f low = block.bearings.min(), high = block.bearings.max();
   return std::ranges::all_of(conditions, [&](const Condition& each) {
     return (each.form.array() * low).max(each.form.array() * high).sum() > each.least;
   });
 }
 
-Renderer::PixelBox Renderer::bounds(const Face& face, const SE3& T_C_W) const {
-  if (wide_) return {0, width_ - 1, 0, height_ - 1};
-  const Extent extent = project_extent(face, T_C_W);
-  const auto [x_0, x_1] = overlap(column_min_x_, column_max_x_, extent.x_0, extent.x_1);
-  const auto [y_0, y_1] = overlap(row_min_y_, row_max_y_, extent.y_0, extent.y_1);
-  return {x_0, x_1, y_0, y_1};
+}  // namespace
+
+Renderer::Renderer(const CameraModel& camera, Scene scene, const LensResidual& residual, double flare)
+    : rays_(camera, residual),
+      scene_(std::move(scene)),
+      flare_(static_cast<float>(flare)),
+      light_(scene_),
+      views_(scene_.faces.size()),
+      seen_(rays_.count()),
+      scratch_(rays_.count()) {
+  out_.radiance.resize(rays_.count()), out_.inverse_depth.resize(rays_.count());
 }
 
 const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
@@ -147,12 +68,12 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   const SE3 T_C_W = T_W_C.inverse();
   const Eigen::Matrix3d R_C_W = T_C_W.R();
   if (scene_.spotlight) {
-    beam_ = beam_at(*scene_.spotlight, t_s);
-    beam_.centre = T_C_W * beam_.centre;
-    beam_.axis = R_C_W * beam_.axis;
+    now_.beam = beam_at(*scene_.spotlight, t_s);
+    now_.beam.centre = T_C_W * now_.beam.centre;
+    now_.beam.axis = R_C_W * now_.beam.axis;
   }
-  if (scene_.flicker) flicker_ = scene_.flicker->at(t_s, T_C_W);
-  if (scene_.lighting) highlights_ = highlights_at(*scene_.lighting, T_C_W, t_s);
+  if (scene_.flicker) now_.flicker = scene_.flicker->at(t_s, T_C_W);
+  if (scene_.lighting) now_.highlights = highlights_at(*scene_.lighting, T_C_W, t_s);
   for (std::size_t i = 0; i < scene_.faces.size(); ++i) {
     Face face = scene_.faces[i];
     Eigen::Vector3d velocity_W = Eigen::Vector3d::Zero();
@@ -163,7 +84,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
     }
     const double distance = face.normal_W.dot(T_W_C.translation() - face.centre_W);
     if (distance <= 1e-6) continue;
-    const PixelBox box = bounds(face, T_C_W);
+    const PixelBox box = rays_.bounds(face, T_C_W);
     if (box.x_1 < box.x_0 || box.y_1 < box.y_0) continue;
     const Eigen::Vector3d c_C = T_C_W * face.centre_W;
     const Eigen::Vector3d a = R_C_W * face.normal_W / -distance;  // 1/z = n.b / n.c
@@ -176,12 +97,12 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
                  static_cast<float>(face.half_u),
                  static_cast<float>(face.half_v),
                  static_cast<float>(distance)};
-    if (!wide_) {
+    if (!rays_.wide) {
       cast(views_[i], box, static_cast<int>(i));
       continue;
     }
     const Conditions conditions = conditions_of(views_[i]);
-    for (const Block& block : blocks_)
+    for (const PixelBlock& block : rays_.blocks)
       if (may_see(block, conditions)) cast(views_[i], block.pixels, static_cast<int>(i));
   }
   shade();
@@ -190,12 +111,12 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   return out_;
 }
 
-void Renderer::cast(const View& view, const PixelBox& box, int index) {
+void Renderer::cast(const FaceView& view, const PixelBox& box, int index) {
   const Eigen::Vector3f a = view.inverse_depth, u = view.u, v = view.v;
   const float half_u = view.half_u, half_v = view.half_v;
   for (int y = box.y_0; y <= box.y_1; ++y) {
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * width_;
-    const float *bx = bearing_x_.data() + row, *by = bearing_y_.data() + row, *bz = bearing_z_.data() + row;
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * rays_.width;
+    const float *bx = rays_.x.data() + row, *by = rays_.y.data() + row, *bz = rays_.z.data() + row;
     float* nearest = out_.inverse_depth.data() + row;
     int* seen = seen_.data() + row;
     for (int x = box.x_0; x <= box.x_1; ++x) {
@@ -211,9 +132,9 @@ void Renderer::cast(const View& view, const PixelBox& box, int index) {
 
 void Renderer::shade() {
   // By runs of pixels of one face within a row, as their arithmetic is then the same.
-  for (int y = 0; y < height_; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    const std::size_t end = row + static_cast<std::size_t>(width_);
+  for (int y = 0; y < rays_.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(rays_.width);
+    const std::size_t end = row + static_cast<std::size_t>(rays_.width);
     for (std::size_t first = row, next = first; first < end; first = next) {
       while (next < end && next - first < kMostPixels && seen_[next] == seen_[first]) ++next;
       if (seen_[first] < 0) {
@@ -227,34 +148,34 @@ void Renderer::shade() {
 
 void Renderer::shade_run(std::size_t index, std::size_t first, std::size_t n) {
   const Face& face = scene_.faces[index];
-  const View& view = views_[index];
+  const FaceView& view = views_[index];
   const auto pixels = [&](const std::vector<float>& image) {
     return Eigen::Map<const Eigen::ArrayXf>(image.data() + first, static_cast<Eigen::Index>(n));
   };
-  const auto bx = pixels(bearing_x_), by = pixels(bearing_y_), bz = pixels(bearing_z_);
+  const auto bx = pixels(rays_.x), by = pixels(rays_.y), bz = pixels(rays_.z);
   const PixelValues z = 1.0F / pixels(out_.inverse_depth);
   // Area of a pixel on the surface: (z / f)^2 over the cosine of incidence, which is distance / (z |b|); z is the
   // distance where b is a unit vector.
-  const PixelValues pitch = face.texels_per_m * z / focal_;
-  const PixelValues area = pitch * pitch * pixels(bearing_norm_) * z / view.distance;
+  const PixelValues pitch = face.texels_per_m * z / rays_.focal;
+  const PixelValues area = pitch * pitch * pixels(rays_.norm) * z / view.distance;
   const PixelValues u = (view.u.x() * bx + (view.u.y() * by + view.u.z() * bz)) * z;
   const PixelValues v = (view.v.x() * bx + (view.v.y() * by + view.v.z() * bz)) * z;
   PixelValues light = light_.at(index, u, v);
   const auto point = [&](Eigen::Index i) { return Eigen::Vector3f(z[i] * bx[i], z[i] * by[i], z[i] * bz[i]); };
-  if (beam_.power > 0.0 && !face.glows)
-    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] += beam_light(beam_, point(i), view.normal);
-  if (flicker_.deviation != 0.0F)
-    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] *= flicker_.factor(point(i));
+  if (now_.beam.power > 0.0 && !face.glows)
+    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] += beam_light(now_.beam, point(i), view.normal);
+  if (now_.flicker.deviation != 0.0F)
+    for (Eigen::Index i = 0; i < light.size(); ++i) light[i] *= now_.flicker.factor(point(i));
   const PixelValues texel_u = u * face.texels_per_m + face.offset_u, texel_v = v * face.texels_per_m + face.offset_v;
   Eigen::Map<Eigen::ArrayXf> radiance(scratch_.data() + first, light.size());
   radiance = face.brightness * light * scene_.textures[face.texture].sample(texel_u, texel_v, area);
-  if (!highlights_.empty() && !face.glows)
+  if (!now_.highlights.empty() && !face.glows)
     for (Eigen::Index i = 0; i < light.size(); ++i) radiance[i] += highlight(point(i), view.normal);
 }
 
 float Renderer::highlight(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {
   double sum = 0.0;
-  for (const Lamp& lamp : highlights_) sum += lamp_highlight(lamp, p.cast<double>(), normal.cast<double>());
+  for (const Lamp& lamp : now_.highlights) sum += lamp_highlight(lamp, p.cast<double>(), normal.cast<double>());
   return static_cast<float>(sum);
 }
 
@@ -268,9 +189,9 @@ void Renderer::flare() {
 }
 
 float Renderer::squared_beam_speed(const Eigen::Vector3f& bearing, float inverse_depth) const {
-  if (beam_.rate == 0.0 || inverse_depth == 0.0F) return 0.0F;
-  const float from_lamp = (bearing / inverse_depth - beam_.centre.cast<float>()).norm();
-  const float speed = static_cast<float>(beam_.rate) * from_lamp * inverse_depth * focal_;
+  if (now_.beam.rate == 0.0 || inverse_depth == 0.0F) return 0.0F;
+  const float from_lamp = (bearing / inverse_depth - now_.beam.centre.cast<float>()).norm();
+  const float speed = static_cast<float>(now_.beam.rate) * from_lamp * inverse_depth * rays_.focal;
   return speed * speed;
 }
 
@@ -278,7 +199,7 @@ void Renderer::blur() {
   // Blur of the lens and the size of a pixel: standard deviation sqrt(0.4) = 0.63 px.
   constexpr float kSide = 0.2F, kMiddle = 0.6F;
   std::vector<float>& out = out_.radiance;
-  const std::size_t w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+  const std::size_t w = static_cast<std::size_t>(rays_.width), h = static_cast<std::size_t>(rays_.height);
   for (std::size_t y = 0; y < h; ++y) {
     const float* above = scratch_.data() + w * (y > 0 ? y - 1 : 0);
     const float* here = scratch_.data() + w * y;
@@ -298,17 +219,17 @@ double Renderer::max_image_speed(const Eigen::Vector3d& v_C, const Eigen::Vector
   const Eigen::Vector3f v = v_C.cast<float>(), omega = omega_C.cast<float>();
   float fastest = 0.0F;
   std::size_t k = 0;
-  for (int y = 0; y < height_; y += kMotionStride) {
-    for (int x = 0; x < width_; x += kMotionStride) {
-      const std::size_t i = static_cast<std::size_t>(y * width_ + x);
-      const Eigen::Vector3f b(bearing_x_[i], bearing_y_[i], bearing_z_[i]);
+  for (int y = 0; y < rays_.height; y += PixelRays::kMotionStride) {
+    for (int x = 0; x < rays_.width; x += PixelRays::kMotionStride) {
+      const std::size_t i = static_cast<std::size_t>(y * rays_.width + x);
+      const Eigen::Vector3f b = rays_.bearing(i);
       const Eigen::Vector3f own = seen_[i] < 0 ? -v : (views_[static_cast<std::size_t>(seen_[i])].velocity - v).eval();
       const Eigen::Vector3f moved = own * out_.inverse_depth[i] - omega.cross(b);  // velocity of the point / depth
-      if (wide_) {
-        fastest = std::max(fastest, focal_ * focal_ * b.cross(moved).squaredNorm());
+      if (rays_.wide) {
+        fastest = std::max(fastest, rays_.focal * rays_.focal * b.cross(moved).squaredNorm());
       } else {
         const Eigen::Vector2f slide = moved.head<2>() - b.head<2>() * moved.z();
-        fastest = std::max(fastest, (pixel_per_point_[k++] * slide).squaredNorm());
+        fastest = std::max(fastest, (rays_.per_point[k++] * slide).squaredNorm());
       }
       fastest = std::max(fastest, squared_beam_speed(b, out_.inverse_depth[i]));
     }

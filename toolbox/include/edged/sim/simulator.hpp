@@ -13,9 +13,8 @@
 
 namespace edged {
 
-// Of the library itself.
+// Types of the library itself.
 class DisturbedTrajectory;
-struct Rendering;
 struct Scene;
 
 /// Deterministic by config and seed. Renders as next() is called; holds the measurements of one exposure at most.
@@ -31,7 +30,7 @@ class Simulator : public Dataset {
 
   const DatasetInfo& info() const override;
   std::optional<Measurement> next() override;
-  /// Of events alone: frames cost little beside the pictures.
+  /// Leaves out events alone: frames cost little beside the pictures.
   void leave_out(Modality unwanted) override;
   /// T_W_B at 200 Hz, stamps on the IMU's clock.
   std::optional<GroundTruth> ground_truth() const override;
@@ -43,7 +42,6 @@ class Simulator : public Dataset {
   /// What has been rendered so far: how many pictures, and the last one's time on the camera's clock.
   std::size_t renderings() const;
   Timestamp rendered_until() const;
-  const Rendering& last_rendering() const;
   /// The scene.
   const Scene& scene() const;
 
