@@ -13,7 +13,7 @@
 #include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
-#include "edged/checks/diagnosis.hpp"
+#include "edged/checks/checks.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
 
@@ -89,7 +89,7 @@ int run_doctor(const DoctorOptions& options) {
          compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
          other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio()),
          least_turning(cameras[i].camera.modality)});
-  std::vector<Finding> findings = diagnose(read.survey, recording.calibration.has_value(), checks);
+  std::vector<Finding> findings = check_recording({read.survey, recording.calibration.has_value(), std::move(checks)});
   external.judge(gyro, read.survey.external, findings);
   if (read.survey.events.count + read.survey.frames.count == 0)
     if (const auto start_s = cameras_start_after_s(options.source)) findings = {cameras_start_later(*start_s)};

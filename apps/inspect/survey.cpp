@@ -25,7 +25,7 @@ std::string size_text(cv::Size size) {
   return size.empty() ? "size unknown" : fmt::format("{} x {} px", size.width, size.height);
 }
 
-std::string gap_text(const StreamSurvey& stream) {
+std::string gap_text(const StreamStatistics& stream) {
   if (stream.gaps == 0) return "no gaps";
   std::string text = fmt::format("{} gaps of {:.3f} s together, longest:", stream.gaps, to_seconds(stream.missing));
   for (const Gap& gap : stream.longest)
@@ -33,15 +33,15 @@ std::string gap_text(const StreamSurvey& stream) {
   return text;
 }
 
-std::string stream_text(const StreamSurvey& stream, std::string_view unit = "Hz") {
+std::string stream_text(const StreamStatistics& stream, std::string_view unit = "Hz") {
   return fmt::format("{} in {:.3f} s ({:.3f} to {:.3f} s), {}{}", stream.count, to_seconds(stream.length()),
                      to_seconds(*stream.begin), to_seconds(*stream.end), si_number(stream.rate_hz()), unit);
 }
 
 /// "below 1 k", "1 k to 10 k", ..., "above 10 M", each with a bar.
-std::string histogram(const EventSurvey& events) {
+std::string histogram(const EventStatistics& events) {
   constexpr double kBarColumns = 40;
-  const auto& bands = EventSurvey::kRateBands;
+  const auto& bands = EventStatistics::kRateBands;
   std::string text;
   for (std::size_t i = 0; i <= bands.size(); ++i) {
     const std::string name = i == 0 ? fmt::format("below {}", si_number(bands.front()))
@@ -55,8 +55,8 @@ std::string histogram(const EventSurvey& events) {
   return text;
 }
 
-std::string events_text(const Survey& s, const std::string& name) {
-  const EventSurvey& e = s.event_details;
+std::string events_text(const RecordingStatistics& s, const std::string& name) {
+  const EventStatistics& e = s.event_details;
   std::string text = survey_line(name, stream_text(s.events, "ev/s"));
   text += survey_line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
                                       size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
@@ -79,7 +79,7 @@ std::string events_text(const Survey& s, const std::string& name) {
   return text + survey_line("", hot);
 }
 
-std::string frames_text(const Survey& s, const std::string& name) {
+std::string frames_text(const RecordingStatistics& s, const std::string& name) {
   return survey_line(name, stream_text(s.frames)) + survey_line("", gap_text(s.frames)) +
          survey_line("", fmt::format("{}, mean brightness {:.0f} of 255", size_text(s.image_size), s.mean_brightness));
 }
@@ -95,8 +95,8 @@ std::string cameras_text(const DatasetInfo& info) {
   return text;
 }
 
-std::string imu_text(const Survey& s) {
-  const ImuSurvey& imu = s.imu_details;
+std::string imu_text(const RecordingStatistics& s) {
+  const ImuStatistics& imu = s.imu_details;
   std::string text = survey_line("IMU", stream_text(s.imu)) + survey_line("", gap_text(s.imu));
   text +=
       survey_line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
@@ -114,7 +114,7 @@ std::string imu_text(const Survey& s) {
                          rest.gyro.x(), rest.gyro.y(), rest.gyro.z(), rest.accel.x(), rest.accel.y(), rest.accel.z()));
 }
 
-nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
+nlohmann::ordered_json stream_json(const StreamStatistics& stream) {
   if (stream.count == 0) return {{"count", 0}};
   nlohmann::ordered_json json = {{"count", stream.count},        {"begin_ns", to_ns(*stream.begin)},
                                  {"end_ns", to_ns(*stream.end)}, {"rate_hz", stream.rate_hz()},
@@ -124,8 +124,8 @@ nlohmann::ordered_json stream_json(const StreamSurvey& stream) {
   return json;
 }
 
-nlohmann::ordered_json events_json(const Survey& s) {
-  const EventSurvey& e = s.event_details;
+nlohmann::ordered_json events_json(const RecordingStatistics& s) {
+  const EventStatistics& e = s.event_details;
   nlohmann::ordered_json json = stream_json(s.events);
   if (s.events.count > 0) {
     json.update({{"width", s.info.event_sensor.width},
@@ -135,7 +135,7 @@ nlohmann::ordered_json events_json(const Survey& s) {
                  {"positive_share", e.positive_share},
                  {"active_share", e.active_share},
                  {"peak_rate_hz", e.peak_rate_hz},
-                 {"rate_bands_hz", EventSurvey::kRateBands},
+                 {"rate_bands_hz", EventStatistics::kRateBands},
                  {"rate_shares", e.rate_shares},
                  {"hot_known", e.hot_known},
                  {"hot_pixels", e.hot_pixels},
@@ -151,7 +151,7 @@ nlohmann::ordered_json events_json(const Survey& s) {
   return json;
 }
 
-nlohmann::ordered_json frames_json(const Survey& s) {
+nlohmann::ordered_json frames_json(const RecordingStatistics& s) {
   nlohmann::ordered_json json = stream_json(s.frames);
   if (s.frames.count > 0)
     json.update(
@@ -160,21 +160,21 @@ nlohmann::ordered_json frames_json(const Survey& s) {
 }
 
 /// All cameras by name, if there are several of a kind.
-nlohmann::ordered_json cameras_json(const Survey& s) {
+nlohmann::ordered_json cameras_json(const RecordingStatistics& s) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  const auto add = [&json](const Survey& of, const RecordedCamera& camera) {
+  const auto add = [&json](const RecordingStatistics& of, const RecordedCamera& camera) {
     const bool events = camera.modality == Modality::Events;
     json[camera.name] = {{"kind", events ? "events" : "frames"}, {"stream", camera.stream}};
     json[camera.name].update(events ? events_json(of) : frames_json(of));
   };
   for (const RecordedCamera& camera : recorded_cameras(s.info)) {
-    const auto further = std::ranges::find(s.more, camera.name, &Survey::camera);
+    const auto further = std::ranges::find(s.more, camera.name, &RecordingStatistics::camera);
     add(further == s.more.end() ? s : *further, camera);
   }
   return json;
 }
 
-std::string external_survey_text(const std::string& name, const ExternalSurvey& s) {
+std::string external_survey_text(const std::string& name, const ExternalStatistics& s) {
   const ExternalSensor& sensor = *find_external_sensor(name);
   std::string text = survey_line(name, stream_text(s.stream)) + survey_line("", gap_text(s.stream));
   std::string range;
@@ -207,7 +207,7 @@ const char* name_of(Fit fit) {
 
 }  // namespace
 
-std::string to_text(const Survey& s) {
+std::string to_text(const RecordingStatistics& s) {
   std::string text = survey_line("recording", fmt::format("{} ({})", s.info.name, s.info.format));
   for (const StreamInfo& stream : s.info.streams)
     text += survey_line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
@@ -218,7 +218,7 @@ std::string to_text(const Survey& s) {
   const bool several = !s.more.empty();
   if (s.events.count > 0) text += events_text(s, several ? s.info.event_camera : "events");
   if (s.frames.count > 0) text += frames_text(s, several ? s.info.frame_camera : "frames");
-  for (const Survey& camera : s.more) {
+  for (const RecordingStatistics& camera : s.more) {
     if (camera.events.count > 0) text += events_text(camera, camera.camera());
     if (camera.frames.count > 0) text += frames_text(camera, camera.camera());
     if (camera.events.count + camera.frames.count == 0) text += survey_line(camera.camera(), "nothing recorded");
@@ -232,7 +232,7 @@ std::string to_text(const Survey& s) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const Survey& s) {
+nlohmann::ordered_json to_json(const RecordingStatistics& s) {
   nlohmann::ordered_json json = {
       {"name", s.info.name}, {"format", s.info.format}, {"overlap_s", to_seconds(s.overlap())}};
   json["streams"] = nlohmann::ordered_json::array();
@@ -243,7 +243,7 @@ nlohmann::ordered_json to_json(const Survey& s) {
   json["frames"] = frames_json(s);
   if (!s.more.empty()) json["cameras"] = cameras_json(s);
   json["imu"] = stream_json(s.imu);
-  if (const ImuSurvey& imu = s.imu_details; s.imu.count > 0) {
+  if (const ImuStatistics& imu = s.imu_details; s.imu.count > 0) {
     json["imu"].update({{"mean_accel", imu.mean_accel}, {"mean_gyro", imu.mean_gyro}, {"max_gyro", imu.max_gyro}});
     json["imu"]["at_rest"] = imu.rest.has_value();
     if (imu.rest)
@@ -321,7 +321,7 @@ nlohmann::ordered_json to_json(const CalibrationFit& fit) {
 }
 
 SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also) {
-  Surveyor surveyor(dataset.info());
+  RecordingCollector surveyor(dataset.info());
   StatusLine status(quiet);
   InterruptibleDataset recording(dataset);
   std::optional<std::string> damage;

@@ -11,13 +11,13 @@
 
 #include "common/source.hpp"
 #include "edged/checks/calibration_fit.hpp"
-#include "edged/checks/diagnosis.hpp"
-#include "edged/checks/statistics/survey.hpp"
+#include "edged/checks/checks.hpp"
+#include "edged/checks/statistics/recording_statistics.hpp"
 
 namespace edged {
 
-std::string to_text(const Survey& survey);
-nlohmann::ordered_json to_json(const Survey& survey);
+std::string to_text(const RecordingStatistics& survey);
+nlohmann::ordered_json to_json(const RecordingStatistics& survey);
 
 /// A line for each finding and one for its remedy, errors last, and a summary.
 std::string to_text(const std::vector<Finding>& findings);
@@ -28,7 +28,7 @@ nlohmann::ordered_json to_json(const CalibrationFit& fit);
 nlohmann::ordered_json to_json(const CalibrationFound& found);
 
 struct SurveyRun {
-  Survey survey;
+  RecordingStatistics survey;
   std::optional<std::string> damage;  ///< the error that ended reading
 };
 

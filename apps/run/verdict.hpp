@@ -8,7 +8,7 @@
 
 #include "common/source.hpp"
 #include "edged/checks/calibration_fit.hpp"
-#include "edged/checks/diagnosis.hpp"
+#include "edged/checks/checks.hpp"
 #include "edged/odometry.hpp"
 #include "edged/rig.hpp"
 #include "run/run_statistics.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edged/checks/diagnosis.hpp"
+#include "edged/checks/checks.hpp"
 
 namespace edged {
 
@@ -29,9 +29,9 @@ struct CalibrationFound {
   double time_offset_ms = 0.0;  ///< estimated total time offset
   double given_offset_ms = 0.0;
   bool beyond = false;  ///< farther off than the priors estimator.calibration.* allow: wrong, and not corrected
-  std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< of the estimate; nothing without one
+  std::optional<double> rotation_sigma_deg, time_sigma_ms;  ///< sigmas of the estimate; nothing without one
   bool inverse = false;                                     ///< the estimate is the inverse of the given rotation
-  std::vector<CorrectionFound> corrections = {};            ///< of lens and position; none without an estimate
+  std::vector<CorrectionFound> corrections = {};            ///< lens and position; none without an estimate
   bool events = false;  ///< an event camera: the latency of its pixels is part of the time offset
 
   bool estimated() const { return rotation_sigma_deg && time_sigma_ms; }

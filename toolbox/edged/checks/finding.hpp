@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A finding of a diagnosis.
+// What a check reports.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct Finding {
   bool imu_unusable = false;
 };
 
-/// Of one diagnosis, in order.
+/// The findings of all checks, in order.
 class Findings {
  public:
   void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }

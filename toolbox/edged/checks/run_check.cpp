@@ -22,8 +22,8 @@ constexpr double kUnexplained = 0.5;                         // above it the com
 constexpr Duration kEnough = std::chrono::seconds(3);        // duration of rotation after which more data adds little
 constexpr Duration kBurst = std::chrono::milliseconds(500);  // tracking runs for this time, then pauses for it
 constexpr Duration kCounted = std::chrono::milliseconds(10);
-constexpr double kMostSurveyed = 5e6;  // events a second of a burst whose pixels are surveyed
-constexpr int kOneOf = 4;              // share 1 / kOneOf of the bursts of events and frames is surveyed
+constexpr double kMostDetailed = 5e6;  // events a second of a burst whose pixels are counted
+constexpr int kOneOf = 4;              // share 1 / kOneOf of the bursts of events and frames is counted in detail
 constexpr Duration kPatience = std::chrono::seconds(6);  // with frames; then the events of the same lens are used, too
 constexpr Duration kFirstUnits = std::chrono::seconds(5);  // before it, units are checked by a camera only
 
@@ -90,15 +90,13 @@ bool confirms(const GyroAgreement& found, const RigCamera& given) {
 /// The text before its colon, which contains no numbers of the result.
 std::string subject_of(const Finding& finding) { return finding.text.substr(0, finding.text.find(':')); }
 
-void judge_lever_arm(const RigCamera& camera, std::vector<Finding>& out) {
+void check_lever_arm(const RigCamera& camera, Findings& out) {
   constexpr double kLongest_m = 2.0;
   const double arm_m = camera.T_B_C.translation().norm();
-  if (arm_m <= kLongest_m) return;
-  out.push_back(
-      {Severity::Error,
-       fmt::format("camera {}: calibrated {:.4g} m away from the IMU, as if its translation were in millimetres",
-                   camera.name, arm_m),
-       "translations are in metres: divide that of T_B_C by 1000"});
+  if (arm_m > kLongest_m)
+    out.error(fmt::format("camera {}: calibrated {:.4g} m away from the IMU, as if its translation were in millimetres",
+                          camera.name, arm_m),
+              "translations are in metres: divide that of T_B_C by 1000");
 }
 
 /// A run is checked by the first camera of each kind.
@@ -110,7 +108,7 @@ DatasetInfo without_further_cameras(DatasetInfo info) {
 }  // namespace
 
 RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics)
-    : has_extrinsics_(has_extrinsics), surveyor_(without_further_cameras(info)) {
+    : has_extrinsics_(has_extrinsics), collector_(without_further_cameras(info)) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
     if (used.find(modality) == nullptr) continue;
     const RigCamera& camera = *used.find(modality);
@@ -124,17 +122,13 @@ RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics
 void RunCheck::add(const Measurement& measurement) {
   const std::string* name = camera_of(measurement);
   if (name && std::ranges::none_of(cameras_, [&](const Camera& camera) { return camera.given.name == *name; })) return;
-  using Detail = Surveyor::Detail;
-  surveyor_.add(measurement, (visual_ / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps,
-                surveyed_every(measurement));
+  using Detail = RecordingCollector::Detail;
+  collector_.add(measurement, (visual_.length / kBurst) % kOneOf == 0 ? Detail::All : Detail::Stamps,
+                 thinning_.next(measurement));
   const auto first = first_stamp(measurement), last = last_stamp(measurement);
   if (!first) return;
-  const auto note = [&](std::optional<Timestamp>& begin, Duration& length) {
-    if (!begin) begin = first;
-    length = *last - *begin;
-  };
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
-    note(first_imu_, imu_);
+    imu_.extend(*first, *last);
     accel_axes_.add(*sample);
     const bool all_told = std::ranges::all_of(cameras_, [](const Camera& camera) {
       return camera.waits || (camera.done && agrees(camera.agreement));  // an IMU on another clock may lag
@@ -143,34 +137,34 @@ void RunCheck::add(const Measurement& measurement) {
     gyro_.add(*sample);
     rate_ += kNewest * (sample->gyro_B.norm() - rate_);
   } else if (name) {
-    note(first_visual_, visual_);
+    visual_.extend(*first, *last);
     for (Camera& camera : cameras_) follow(camera, measurement);
-    if (visual_ > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;
+    if (visual_.length > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;
   }
-  if (!looked_ && std::min(imu_, visual_) >= kFirstUnits) look_ = true;
+  if (!looked_ && std::min(imu_.length, visual_.length) >= kFirstUnits) look_ = true;
 }
 
-/// By the rate of the last kCounted, so that a burst costs the same at any rate above kMostSurveyed.
-std::size_t RunCheck::surveyed_every(const Measurement& measurement) {
+/// By the rate of the last kCounted.
+std::size_t RunCheck::EventThinning::next(const Measurement& measurement) {
   const auto* batch = std::get_if<EventBatch>(&measurement);
   if (batch == nullptr || batch->events.empty()) return 1;
   const Timestamp begin = batch->events.front().t;
   // Before the first batch, and where the stamps go back, nothing has passed.
-  const bool goes_on = counted_from_ != Timestamp::min() && begin >= counted_from_;
-  const Duration passed = goes_on ? begin - counted_from_ : Duration(0);
+  const bool goes_on = counted_from != Timestamp::min() && begin >= counted_from;
+  const Duration passed = goes_on ? begin - counted_from : Duration(0);
   if (!goes_on || passed >= kCounted) {
-    const double most = kMostSurveyed * to_seconds(passed);
-    every_ = goes_on ? 1 + static_cast<std::size_t>(static_cast<double>(counted_) / most) : 1;
-    counted_from_ = begin;
-    counted_ = 0;
+    const double most = kMostDetailed * to_seconds(passed);
+    every = goes_on ? 1 + static_cast<std::size_t>(static_cast<double>(counted) / most) : 1;
+    counted_from = begin;
+    counted = 0;
   }
-  counted_ += batch->events.size();
-  return every_;
+  counted += batch->events.size();
+  return every;
 }
 
 void RunCheck::follow(Camera& camera, const Measurement& measurement) {
   if (camera.done || camera.waits) return;
-  const bool pauses = camera.turning >= first_look(camera.given) && (visual_ / kBurst) % 2 == 1;
+  const bool pauses = camera.turning >= first_look(camera.given) && (visual_.length / kBurst) % 2 == 1;
   if (pauses || !(rate_ > kLeastTurningRate)) return;
   camera.visual.add(measurement);
   const std::vector<Turn>& turns = camera.visual.turns();
@@ -192,43 +186,43 @@ void RunCheck::compare(Camera& camera) {
   camera.done = camera.turning >= kEnough || (camera.agreement && confirms(*camera.agreement, camera.given));
 }
 
-std::vector<Finding> RunCheck::judge(const Survey& survey) const {
-  std::vector<CameraCheck> checks;
-  for (const Camera& camera : cameras_)
-    if (!camera.waits)
-      checks.push_back(
-          {camera.given, has_extrinsics_, camera.done ? camera.agreement : std::nullopt,
-           other_clock_rate(camera.visual.turns(), gyro_, camera.given.time_offset, survey.imu_span_ratio())});
-  for (CameraCheck& check : checks)
-    if (check.agreement) check.agreement = less_sure(*check.agreement, check.camera);
-  std::vector<Finding> out = diagnose(survey, true, checks);
+void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& statistics, Findings& out) {
+  const bool events = camera.given.modality == Modality::Events;
+  const std::string kind = events ? "events" : "frames";
+  if ((events ? statistics.events : statistics.frames).count == 0)
+    out.error(fmt::format("no {}: the mode needs them, and the recording has none", kind),
+              fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind));
+  if (camera.done && camera.contradiction_deg > 0.0 && !imu_unusable(out.list))
+    out.error(fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
+                          camera.given.name, camera.contradiction_deg),
+              "check the rotation of T_B_C and its direction: `edged calib` shows both");
+  if (!camera.twin) check_lever_arm(camera.given, out);
+}
+
+std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics) const {
+  CheckInput input{statistics, true};
   for (const Camera& camera : cameras_) {
-    const bool events = camera.given.modality == Modality::Events;
-    const std::string kind = events ? "events" : "frames";
-    if ((events ? survey.events : survey.frames).count == 0)
-      out.push_back(
-          {Severity::Error, fmt::format("no {}: the mode needs them, and the recording has none", kind),
-           fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind)});
-    if (camera.done && camera.contradiction_deg > 0.0 && !imu_unusable(out))
-      out.push_back({Severity::Error,
-                     fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
-                                 camera.given.name, camera.contradiction_deg),
-                     "check the rotation of T_B_C and its direction: `edged calib` shows both"});
-    if (!camera.twin) judge_lever_arm(camera.given, out);
+    if (camera.waits) continue;
+    input.cameras.push_back(
+        {camera.given, has_extrinsics_, std::nullopt,
+         other_clock_rate(camera.visual.turns(), gyro_, camera.given.time_offset, statistics.imu_span_ratio())});
+    if (camera.done && camera.agreement) input.cameras.back().agreement = less_sure(*camera.agreement, camera.given);
   }
+  Findings out{check_recording(input)};
+  for (const Camera& camera : cameras_) check_camera(camera, statistics, out);
   const bool gyro_agrees = std::ranges::any_of(
       cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
-  if (const auto better = accel_axes_.better(); better && gyro_agrees && !imu_unusable(out))
-    out.push_back({Severity::Error, "accelerometer: gravity does not turn in its axes as measured by the gyro",
-                   fmt::format("give it the axes of the gyro: {} would fit", *better)});
-  std::erase_if(out, [](const Finding& f) { return f.severity == Severity::Good || f.severity == Severity::Note; });
-  return out;
+  if (const auto better = accel_axes_.better(); better && gyro_agrees && !imu_unusable(out.list))
+    out.error("accelerometer: gravity does not turn in its axes as measured by the gyro",
+              fmt::format("give it the axes of the gyro: {} would fit", *better));
+  std::erase_if(out.list, [](const Finding& f) { return f.severity < Severity::Warning; });
+  return out.list;
 }
 
 std::vector<Finding> RunCheck::news() {
   if (!std::exchange(look_, false)) return {};
   looked_ = true;
-  std::vector<Finding> fresh = judge(surveyor_.so_far());
+  std::vector<Finding> fresh = check(collector_.so_far());
   std::erase_if(fresh, [this](const Finding& finding) {
     const bool known = std::ranges::find(told_, subject_of(finding)) != told_.end();
     return known || finding.severity != Severity::Error;
@@ -255,7 +249,7 @@ std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optio
     if (!camera.done && !camera.waits && camera.turning >= first_look(camera.given)) compare(camera);
     camera.done = true;
   }
-  return judge(surveyor_.result(dataset, truth));
+  return check(collector_.result(dataset, truth));
 }
 
 }  // namespace edged

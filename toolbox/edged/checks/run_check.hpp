@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edged/checks/agreement/accel_axes.hpp"
-#include "edged/checks/diagnosis.hpp"
+#include "edged/checks/checks.hpp"
 #include "edged/dataset.hpp"
 
 namespace edged {
@@ -48,22 +48,35 @@ class RunCheck {
     std::optional<GyroAgreement> agreement = std::nullopt;
   };
 
-  std::size_t surveyed_every(const Measurement& measurement);
+  /// The stamps of one kind of sensor.
+  struct StreamSpan {
+    std::optional<Timestamp> begin;
+    Duration length{0};
+
+    void extend(Timestamp first, Timestamp last) { length = last - *(begin = begin.value_or(first)); }
+  };
+  /// Which share of the events is counted in detail, so that a burst costs the same at any high rate.
+  struct EventThinning {
+    Timestamp counted_from = Timestamp::min();
+    std::size_t counted = 0, every = 1;  ///< events since then; one of so many is counted in detail
+
+    std::size_t next(const Measurement& measurement);
+  };
+
   void follow(Camera& camera, const Measurement& measurement);
   void compare(Camera& camera);
-  std::vector<Finding> judge(const Survey& survey) const;
+  static void check_camera(const Camera& camera, const RecordingStatistics& statistics, Findings& out);
+  std::vector<Finding> check(const RecordingStatistics& statistics) const;
 
   bool has_extrinsics_;
-  Surveyor surveyor_;
+  RecordingCollector collector_;
   GyroIntegral gyro_;
   double rate_ = 0.0;  ///< running mean of the gyro rate [rad/s]
   AccelAxes accel_axes_;
   std::vector<Camera> cameras_;
-  std::optional<Timestamp> first_imu_, first_visual_;  ///< first stamps
-  Duration imu_{0}, visual_{0};                        ///< duration of each stream
-  Timestamp counted_from_ = Timestamp::min();
-  std::size_t counted_ = 0, every_ = 1;  ///< events since then; one of so many is surveyed in detail
-  bool look_ = false, looked_ = false;   ///< state of the checks of the IMU
+  StreamSpan imu_, visual_;
+  EventThinning thinning_;
+  bool look_ = false, looked_ = false;  ///< state of the checks of the IMU
   std::vector<std::string> told_;
 };
 

@@ -15,7 +15,7 @@ inline constexpr std::size_t kFewestAccelTurns = 24;
 
 struct AccelAgreement {
   std::size_t turns = 0;     ///< compared
-  double correlation = 0.0;  ///< of camera and accelerometer: positive if they agree, negative for a wrong sign
+  double correlation = 0.0;  ///< between camera and accelerometer: positive if they agree, negative for a wrong sign
 };
 
 /// The velocity of the camera changes by the specific force minus gravity. So at any scale, the part of its next

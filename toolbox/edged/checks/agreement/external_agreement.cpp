@@ -177,23 +177,19 @@ std::string unit_remedy(const std::string& unit, const std::string& column, cons
   return unit.empty() ? otherwise : fmt::format("name its unit in the first line of the file: {}[{}]", column, unit);
 }
 
-void judge_heights(const HeightAgreement& found, std::vector<Finding>& out) {
+void judge_heights(const HeightAgreement& found, Findings& out) {
   constexpr double kOff = 0.3;
   const double sigma = found.scale_sigma;
   if (found.scale + kSureSigmas * sigma < 0.0)
-    out.push_back({Severity::Error, "height: its sign contradicts the accelerometer",
-                   "heights are positive upwards: negate them in the file (a depth is no height)"});
+    out.error("height: its sign contradicts the accelerometer",
+              "heights are positive upwards: negate them in the file (a depth is no height)");
   else if (std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * sigma))
-    out.push_back(
-        {Severity::Warning,
-         fmt::format("height: its changes are {:.2g} +- {:.2g} times those of the accelerometer", found.scale, sigma),
-         unit_remedy(unit_of(found.scale, false), "height",
-                     "check its scale; a frozen or slow filter in the sensor does the same")});
+    out.warn(
+        fmt::format("height: its changes are {:.2g} +- {:.2g} times those of the accelerometer", found.scale, sigma),
+        unit_remedy(unit_of(found.scale, false), "height",
+                    "check its scale; a frozen or slow filter in the sensor does the same"));
   else
-    out.push_back(
-        {Severity::Good,
-         fmt::format("height: sign and scale agree with the accelerometer ({:.2f} +- {:.2f})", found.scale, sigma),
-         ""});
+    out.good(fmt::format("height: sign and scale agree with the accelerometer ({:.2f} +- {:.2f})", found.scale, sigma));
 }
 
 /// Roll, pitch and yaw [deg] as in velocity.rotation_deg, near multiples of 90 deg rounded to them.
@@ -210,18 +206,18 @@ std::string rotation_text(const Matrix3d& R) {
   return fmt::format("{:.0f} {:.0f} {:.0f}", angles[0], angles[1], angles[2]);
 }
 
-void judge_mirrored(const VelocityAgreement& found, std::vector<Finding>& out) {
+void judge_mirrored(const VelocityAgreement& found, Findings& out) {
   std::string turned;
   const std::array<const char*, 3> columns = {"vx", "vy", "vz"};
   for (int axis = 0; axis < 3; ++axis) {
     if (found.signs[axis] < 0.0)
       turned += (turned.empty() ? "" : ", ") + std::string(columns[static_cast<std::size_t>(axis)]);
   }
-  out.push_back({Severity::Error, fmt::format("velocity: the sign of {} contradicts the IMU", turned),
-                 "negate it in the file: axes are right-handed, and the velocity is that of the body over the ground"});
+  out.error(fmt::format("velocity: the sign of {} contradicts the IMU", turned),
+            "negate it in the file: axes are right-handed, and the velocity is that of the body over the ground");
 }
 
-void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out) {
+void judge_velocities(const VelocityAgreement& found, Findings& out) {
   constexpr double kOff_deg = 20.0, kOff = 0.15;
   const double angle_deg = kDegreesPerRadian * angle_of(found.T_B_S.R()), sigma_deg = kDegreesPerRadian * found.sigma;
   const double ratio = 1.0 / found.scale;  // measured over true velocity
@@ -229,21 +225,15 @@ void judge_velocities(const VelocityAgreement& found, std::vector<Finding>& out)
   const bool turned = angle_deg > std::max(kOff_deg, kSureSigmas * sigma_deg);
   const bool scaled = std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * found.sigma);
   if (turned)
-    out.push_back({Severity::Warning,
-                   fmt::format("velocity: its axes are rotated by {:.0f} +- {:.0f} deg relative to those of the IMU",
-                               angle_deg, sigma_deg),
-                   fmt::format("run it with --set velocity.rotation_deg=\"{}\"", rotation_text(found.T_B_S.R()))});
+    out.warn(fmt::format("velocity: its axes are rotated by {:.0f} +- {:.0f} deg relative to those of the IMU",
+                         angle_deg, sigma_deg),
+             fmt::format("run it with --set velocity.rotation_deg=\"{}\"", rotation_text(found.T_B_S.R())));
   if (scaled)
-    out.push_back(
-        {Severity::Warning,
-         fmt::format("velocity: {:.2g} times that of the IMU (+- {:.0f} %)", ratio, 100.0 * found.sigma),
-         unit_remedy(unit_of(ratio, true), "vx", "scale it in the file, or give it a larger velocity.scale_sigma")});
+    out.warn(fmt::format("velocity: {:.2g} times that of the IMU (+- {:.0f} %)", ratio, 100.0 * found.sigma),
+             unit_remedy(unit_of(ratio, true), "vx", "scale it in the file, or give it a larger velocity.scale_sigma"));
   if (!turned && !scaled)
-    out.push_back(
-        {Severity::Good,
-         fmt::format("velocity: axes and scale agree with the IMU (rotated {:.0f} deg, scale {:.2f}, +- {:.2f})",
-                     angle_deg, ratio, found.sigma),
-         ""});
+    out.good(fmt::format("velocity: axes and scale agree with the IMU (rotated {:.0f} deg, scale {:.2f}, +- {:.2f})",
+                         angle_deg, ratio, found.sigma));
 }
 
 }  // namespace
@@ -300,13 +290,16 @@ void ExternalCheck::add(const ExternalSample& sample) {
   }
 }
 
-void ExternalCheck::judge(const GyroIntegral& gyro, const ExternalSurveys& surveys, std::vector<Finding>& out) const {
-  if (const auto found = compare_heights(heights_, gyro)) judge_heights(*found, out);
-  const auto survey = surveys.find("velocity");
-  if (survey == surveys.end()) return;
-  const double sigma = survey->second.sigma, noise = survey->second.noise;
-  const auto found = compare_velocities(velocities_, gyro, sigma > 0.0 ? std::min(sigma, noise) : noise);
-  if (found) judge_velocities(*found, out);
+void ExternalCheck::judge(const GyroIntegral& gyro, const ExternalStatisticsByName& statistics,
+                          std::vector<Finding>& out) const {
+  Findings own;
+  if (const auto found = compare_heights(heights_, gyro)) judge_heights(*found, own);
+  if (const auto velocity = statistics.find("velocity"); velocity != statistics.end()) {
+    const double sigma = velocity->second.sigma, noise = velocity->second.noise;
+    const auto found = compare_velocities(velocities_, gyro, sigma > 0.0 ? std::min(sigma, noise) : noise);
+    if (found) judge_velocities(*found, own);
+  }
+  std::ranges::move(own.list, std::back_inserter(out));
 }
 
 }  // namespace edged

@@ -9,7 +9,7 @@
 
 #include "edged/checks/agreement/gyro_integral.hpp"
 #include "edged/checks/finding.hpp"
-#include "edged/checks/statistics/external_survey.hpp"
+#include "edged/checks/statistics/external_statistics.hpp"
 #include "edged/measurement.hpp"
 #include "edged/se3.hpp"
 
@@ -24,9 +24,9 @@ struct HeightAgreement {
 struct VelocityAgreement {
   SE3 T_B_S;  ///< the best rotation, and the position of the sensor
   double scale = 1.0;
-  double sigma = 0.0;                               ///< of the entries of R_B_S in the determined axes
+  double sigma = 0.0;                               ///< sigma of the entries of R_B_S in the determined axes
   bool left_handed = false;                         ///< a rotation fits only after the signs are applied
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();  ///< of the axes
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();  ///< signs of the axes
 };
 
 /// Over a few seconds, the motion of the body is the integral of the accelerometer, with unknown velocity, gravity and
@@ -40,7 +40,7 @@ std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySa
 class ExternalCheck {
  public:
   void add(const ExternalSample& sample);
-  void judge(const GyroIntegral& gyro, const ExternalSurveys& surveys, std::vector<Finding>& out) const;
+  void judge(const GyroIntegral& gyro, const ExternalStatisticsByName& statistics, std::vector<Finding>& out) const;
 
  private:
   std::vector<HeightSample> heights_;

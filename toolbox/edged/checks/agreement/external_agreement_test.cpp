@@ -61,10 +61,10 @@ class SensorsOnABody : public ::testing::Test {
 
   bool says(const std::vector<VelocitySample>& samples, const std::string& text, Severity severity) {
     ExternalCheck check;
-    ExternalSurveyor surveyor;
-    for (const VelocitySample& sample : samples) check.add(sample), surveyor.add(sample);
+    ExternalCollector collector;
+    for (const VelocitySample& sample : samples) check.add(sample), collector.add(sample);
     std::vector<Finding> findings;
-    check.judge(gyro_, {{"velocity", surveyor.result()}}, findings);
+    check.judge(gyro_, {{"velocity", collector.result()}}, findings);
     for (const Finding& f : findings) std::printf("%s: %s\n", f.text.c_str(), f.remedy.c_str());
     return std::ranges::any_of(findings, [&](const Finding& finding) {
       return finding.severity == severity && (finding.text + ": " + finding.remedy).find(text) != std::string::npos;

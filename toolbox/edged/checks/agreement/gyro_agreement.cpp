@@ -18,7 +18,7 @@ constexpr std::size_t kFewestTurns = 30;
 constexpr Duration kShiftStep = std::chrono::milliseconds(4);  // step of the search, which is then refined
 constexpr double kUnlike = 0.5;  // of the rotation unexplained: above it the gyro does not belong to the camera
 
-/// The same rotations, measured by the camera and by the gyro at one time shift [rad/s].
+/// Rotations, each measured by the camera and by the gyro at one time shift [rad/s].
 struct Pairs {
   std::vector<Eigen::Vector3d> camera, gyro;
   std::vector<Eigen::Vector3d> gyro_slope;  ///< d gyro / d shift [rad/s^2]
@@ -40,22 +40,22 @@ Pairs pairs_at(std::span<const Turn> turns, const GyroIntegral& integral, Durati
 }
 
 /// Rotation and scale with gyro ~ scale * R * camera.
-struct Fit {
+struct TurnFit {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   double scale = 1.0;
   std::vector<double> weights;  ///< Cauchy
   double median_error = 0.0;    ///< [rad/s of the camera]
 };
 
-Eigen::Vector3d error_of(const Pairs& pairs, const Fit& fit, std::size_t i) {
+Eigen::Vector3d error_of(const Pairs& pairs, const TurnFit& fit, std::size_t i) {
   return pairs.gyro[i] / fit.scale - fit.R * pairs.camera[i];
 }
 
 /// Least squares with Cauchy weights (Arun et al. 1987; the scale by projection).
-Fit fit_turns(const Pairs& pairs) {
+TurnFit fit_turns(const Pairs& pairs) {
   constexpr int kRounds = 6;
   const std::size_t n = pairs.camera.size();
-  Fit fit;
+  TurnFit fit;
   std::vector<double> errors(n), speeds(n);
   for (std::size_t i = 0; i < n; ++i) speeds[i] = pairs.camera[i].norm();
   const double usual = std::max(median(speeds), 1e-9);
@@ -81,7 +81,7 @@ Fit fit_turns(const Pairs& pairs) {
 }
 
 /// A Gauss-Newton step in the shift [s], with its uncertainty. Rotations overlap: `overlap` of them count as one.
-double refine_shift(const Pairs& pairs, const Fit& fit, double overlap, GyroAgreement& agreement) {
+double refine_shift(const Pairs& pairs, const TurnFit& fit, double overlap, GyroAgreement& agreement) {
   double slopes = 0.0, product = 0.0, squares = 0.0, weight = 0.0;
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < pairs.camera.size(); ++i) {
@@ -181,7 +181,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
   for (int i = 0; i < kRefinements; ++i) {
     pairs = pairs_at(turns, gyro, agreement.time_offset);
     if (pairs.camera.size() < kFewestTurns) return std::nullopt;
-    const Fit fit = fit_turns(pairs);
+    const TurnFit fit = fit_turns(pairs);
     const double step_s = refine_shift(pairs, fit, overlap_of(turns), agreement);
     agreement.time_offset = std::clamp(agreement.time_offset + duration_from_seconds(std::clamp(step_s, -0.02, 0.02)),
                                        expected - kMostShift, expected + kMostShift);

@@ -20,16 +20,15 @@ struct GyroAgreement {
   double time_sigma_s = 0.0;
   bool at_bound = false;  ///< outside the searched range: time_offset is no estimate
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
-  double rotation_sigma = 0.0;  ///< of the least certain axis [rad]; large if it rotated about one axis only
+  double rotation_sigma = 0.0;  ///< sigma of the least certain axis [rad]; large if it rotated about one axis only
   /// Covariance of R_B_C * Exp(error), from the scatter of the estimates of parts of the recording [rad^2].
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  double common_error =
-      0.0;                   ///< of the rotation: an error shared by all parts, which their scatter does not show [rad]
-  bool mirrored = false;     ///< fits only with negated rotations: axes of the gyro have the wrong sign
-  double gyro_scale = 1.0;   ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
-  double scale_sigma = 0.0;  ///< 0: only units can be determined
+  double common_error = 0.0;  ///< error of the rotation shared by all parts, which their scatter does not show [rad]
+  bool mirrored = false;      ///< fits only with negated rotations: axes of the gyro have the wrong sign
+  double gyro_scale = 1.0;    ///< angular speed of the gyro over that of the camera: 57.3 for deg/s
+  double scale_sigma = 0.0;   ///< 0: only units can be determined
   double scale_unexplained = 1.0;  ///< unexplained share with that scale
-  AccelAgreement accel;            ///< of the accelerometer, for the same rotations
+  AccelAgreement accel;            ///< agreement of the accelerometer over the rotations compared
 };
 
 /// Time offsets within kMostShift of `expected` are tried. Nothing with too few rotations to compare.

@@ -85,7 +85,7 @@ TEST(GyroAgreement, TellsAGyroWithNegatedAxes) {
   EXPECT_FALSE(compare_with_gyro(turns_of(8, kTurned, 0.01), gyro_of(8), Duration(0))->mirrored);
 }
 
-/// The same turns with corners at 1 to 3 m, of a camera that also moves by up to 0.1 m; rotation vectors with the
+/// Turns with corners at 1 to 3 m, of a camera that also moves by up to 0.1 m; rotation vectors with the
 /// errors of a single rotation.
 std::vector<Turn> turns_with_rays(double seconds, double offset_s) {
   std::mt19937_64 random(5);

@@ -19,7 +19,7 @@ class GyroIntegral {
   /// The rotation vector of the body between two stamps as the sum of the readings, for small rotations and any unit of
   /// the gyro. Nothing if samples are missing.
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
-  /// The same for any rotation: R_W_B(end) = R_W_B(begin) * Exp(result).
+  /// The rotation vector for any rotation: R_W_B(end) = R_W_B(begin) * Exp(result).
   std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
   /// The rotation relative to the first sample, and the integral of the specific force in those axes between two stamps
   /// [m/s]: the change of velocity plus the reaction to gravity.

@@ -14,7 +14,7 @@ namespace edged {
 /// The rate of an IMU clock that differs from that of the camera.
 struct ClockRate {
   double rate = 1.0;         ///< seconds of the IMU per second of the camera
-  double correlation = 0.0;  ///< of the angular speeds of both, with the corrected clock
+  double correlation = 0.0;  ///< between the angular speeds of both, with the corrected clock
 };
 
 /// Compares the angular speeds of camera and gyro, independent of the mounting of the camera and the unit of the gyro,

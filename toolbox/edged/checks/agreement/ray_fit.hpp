@@ -15,16 +15,17 @@ namespace edged {
 struct GyroMount {
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
   double shift_s = 0.0;                            ///< t_imu = t_cam + shift
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< of the gyro, in its measurement
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< bias of the gyro, in its measurement
   double gyro_scale = 1.0;                         ///< measured over true angular speed
 };
 
 struct RayFit {
   GyroMount mount;
-  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  ///< of R_B_C * Exp(error) [rad^2]
+  Eigen::Matrix3d rotation_covariance =
+      Eigen::Matrix3d::Zero();  ///< covariance of the error in R_B_C * Exp(error) [rad^2]
   double shift_sigma_s = 0.0;
   double unexplained = 1.0;  ///< share of the cost that independent rotations explain, but those of the gyro do not
-  double scale_sigma = 0.0;  ///< of mount.gyro_scale
+  double scale_sigma = 0.0;  ///< sigma of mount.gyro_scale
   double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
 };
 

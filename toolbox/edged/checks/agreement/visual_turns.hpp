@@ -65,7 +65,7 @@ class VisualTurns {
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
   std::vector<Turn> turns_;
-  cv::Mat event_image_;  ///< of the events since the previous image; its stamp is the middle of their stamps
+  cv::Mat event_image_;  ///< image of the events since the previous one; its stamp is the middle of their stamps
   std::optional<Timestamp> image_begin_;
   std::size_t events_ = 0, events_per_image_;
 };

@@ -51,24 +51,16 @@ HotPixelFinder::Excess HotPixelFinder::excess_with_window(int x, int y, double s
 /// Events of the second most active of the eight neighbours: an edge or moving object has two or more of them, and a
 /// hot pixel may have another one beside it.
 int HotPixelFinder::neighbours(int x, int y) const {
-  const std::uint16_t* const here = &window_[place(x, y)];
-  const std::ptrdiff_t row = grid_.width;
-  int most = 0, second = 0;
-  const auto add = [&](std::ptrdiff_t place) {
-    const int count = here[place];
-    second = std::max(second, std::min(most, count));
-    most = std::max(most, count);
-  };
-  const bool left = x > 0, right = x + 1 < extent_.width, above = y > 0, below = y + 1 < extent_.height;
-  if (above && left) add(-row - 1);
-  if (above) add(-row);
-  if (above && right) add(-row + 1);
-  if (left) add(-1);
-  if (right) add(1);
-  if (below && left) add(row - 1);
-  if (below) add(row);
-  if (below && right) add(row + 1);
-  return left && right && above && below ? second : most;
+  int most = 0, second = 0, count = 0;
+  for (int v = std::max(0, y - 1); v < std::min(extent_.height, y + 2); ++v)
+    for (int u = std::max(0, x - 1); u < std::min(extent_.width, x + 2); ++u) {
+      if (u == x && v == y) continue;
+      const int events = window_[place(u, v)];
+      second = std::max(second, std::min(most, events));
+      most = std::max(most, events);
+      ++count;
+    }
+  return count == 8 ? second : most;
 }
 
 std::vector<HotPixel> HotPixelFinder::result() const {

@@ -53,7 +53,7 @@ class HotPixelFinder {
   /// Sums of a weighted mean of events per second beyond the neighbours, of variance 1 / weight.
   struct Excess {
     float sum = 0.0F, weight = 0.0F;
-    float most_sum = 0.0F, most_weight = 0.0F;  ///< of the window with the largest contribution
+    float most_sum = 0.0F, most_weight = 0.0F;  ///< the window with the largest contribution
     double without_most_hz() const { return weight > most_weight ? (sum - most_sum) / (weight - most_weight) : 0.0; }
   };
   static constexpr Duration kWindow = std::chrono::milliseconds(500);
@@ -62,12 +62,12 @@ class HotPixelFinder {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x);
   }
   void end_window(Timestamp t);
-  /// Of a pixel, if a window of that length ended now.
+  /// Excess of a pixel, if a window of that length ended now.
   Excess excess_with_window(int x, int y, double seconds) const;
   int neighbours(int x, int y) const;
 
   cv::Size grid_, extent_, judged_;  ///< judged_: extent_ at the last window
-  float silent_weight_ = 0.0F;       ///< of a pixel without events of its own and of its neighbours so far
+  float silent_weight_ = 0.0F;       ///< weight of a pixel without events of its own and of its neighbours so far
   std::vector<std::uint32_t> total_;
   std::vector<std::uint16_t> window_;
   std::vector<Excess> excess_;

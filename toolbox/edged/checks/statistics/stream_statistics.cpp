@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/statistics/stream_survey.hpp"
+#include "edged/checks/statistics/stream_statistics.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -15,9 +15,9 @@ constexpr std::size_t kListedGaps = 5;
 
 }  // namespace
 
-void StreamSurveyor::add(Timestamp first, Timestamp last, std::size_t count) {
-  if (survey_.end) {
-    const Gap step{*survey_.end, first - *survey_.end};
+void StreamCollector::add(Timestamp first, Timestamp last, std::size_t count) {
+  if (statistics_.end) {
+    const Gap step{*statistics_.end, first - *statistics_.end};
     if (longest_step_) {
       judge(step);
     } else {
@@ -25,31 +25,31 @@ void StreamSurveyor::add(Timestamp first, Timestamp last, std::size_t count) {
       if (steps_.size() == kLearnSteps) learn();
     }
   }
-  if (!survey_.begin) survey_.begin = first;
-  survey_.end = last;
-  survey_.count += count;
+  if (!statistics_.begin) statistics_.begin = first;
+  statistics_.end = last;
+  statistics_.count += count;
 }
 
-StreamSurvey StreamSurveyor::result() const {
-  StreamSurveyor copy = *this;
+StreamStatistics StreamCollector::result() const {
+  StreamCollector copy = *this;
   if (!copy.steps_.empty()) copy.learn();
-  return copy.survey_;
+  return copy.statistics_;
 }
 
-void StreamSurveyor::learn() {
+void StreamCollector::learn() {
   std::vector<double> lengths;
   for (const Gap& step : steps_) lengths.push_back(static_cast<double>(step.length.count()));
-  survey_.typical_step = Duration(static_cast<Duration::rep>(median(std::move(lengths))));
-  longest_step_ = survey_.typical_step * 5 / 2;
+  statistics_.typical_step = Duration(static_cast<Duration::rep>(median(std::move(lengths))));
+  longest_step_ = statistics_.typical_step * 5 / 2;
   for (const Gap& step : std::exchange(steps_, {})) judge(step);
 }
 
-void StreamSurveyor::judge(const Gap& step) {
+void StreamCollector::judge(const Gap& step) {
   if (step.length <= *longest_step_) return;
-  ++survey_.gaps;
-  survey_.missing += step.length;
+  ++statistics_.gaps;
+  statistics_.missing += step.length;
   const auto longer = [](const Gap& a, const Gap& b) { return a.length > b.length; };
-  std::vector<Gap>& list = survey_.longest;
+  std::vector<Gap>& list = statistics_.longest;
   list.insert(std::upper_bound(list.begin(), list.end(), step, longer), step);
   if (list.size() > kListedGaps) list.pop_back();
 }

@@ -11,18 +11,18 @@
 
 namespace edged {
 
-struct FlickerSurvey {
-  double hz = 0.0;           ///< of the light, the mean over the time with flicker
-  double time_share = 0.0;   ///< of the recording
+struct FlickerStatistics {
+  double hz = 0.0;           ///< frequency of the light, the mean over the time with flicker
+  double time_share = 0.0;   ///< share of the recording
   double event_share = 0.0;  ///< about, of the events in that time
-  double image_share = 0.0;  ///< of the cells with events in that time
+  double image_share = 0.0;  ///< share of the cells with events in that time
 };
 
 /// Judges cells of 32 px in each window in which there is flicker. Memory: 4 bytes for each pixel.
-class FlickerSurveyor {
+class FlickerCollector {
  public:
   /// Events outside of the grid are ignored.
-  explicit FlickerSurveyor(cv::Size grid);
+  explicit FlickerCollector(cv::Size grid);
 
   /// Stamps should not decrease.
   void add(const Event& event) {
@@ -32,8 +32,8 @@ class FlickerSurveyor {
     cells_[static_cast<std::size_t>((event.y >> kCellBits) * columns_ + (event.x >> kCellBits))].add(
         detector_.since_begin(event.t), event.positive);
   }
-  /// Of the windows that have ended.
-  std::optional<FlickerSurvey> result() const;
+  /// Statistics of the windows that have ended.
+  std::optional<FlickerStatistics> result() const;
 
  private:
   static constexpr int kCellBits = 5;

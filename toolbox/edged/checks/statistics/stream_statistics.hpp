@@ -16,7 +16,7 @@ struct Gap {
   Duration length{0};
 };
 
-struct StreamSurvey {
+struct StreamStatistics {
   std::size_t count = 0;
   std::optional<Timestamp> begin, end;
   Duration typical_step{0};  ///< median of the first steps
@@ -31,14 +31,14 @@ struct StreamSurvey {
 };
 
 /// Stamps of one sensor, in order. Memory is bounded.
-class StreamSurveyor {
+class StreamCollector {
  public:
   /// longest_step: longer ones are gaps; by default 2.5 typical steps.
-  explicit StreamSurveyor(std::optional<Duration> longest_step = std::nullopt) : longest_step_(longest_step) {}
+  explicit StreamCollector(std::optional<Duration> longest_step = std::nullopt) : longest_step_(longest_step) {}
 
   /// `count` measurements from `first` to `last`.
   void add(Timestamp first, Timestamp last, std::size_t count = 1);
-  StreamSurvey result() const;
+  StreamStatistics result() const;
 
  private:
   void learn();
@@ -46,7 +46,7 @@ class StreamSurveyor {
 
   std::optional<Duration> longest_step_;
   std::vector<Gap> steps_;  ///< the first ones, until the typical step is known
-  StreamSurvey survey_;
+  StreamStatistics statistics_;
 };
 
 }  // namespace edged

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "edged/checks/statistics/stream_survey.hpp"
+#include "edged/checks/statistics/stream_statistics.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 
 namespace edged {
 
-struct ExternalSurvey {
-  StreamSurvey stream;
-  std::vector<double> least, most;  ///< of the measured values of each column
+struct ExternalStatistics {
+  StreamStatistics stream;
+  std::vector<double> least, most;  ///< bounds of the measured values of each column
   double noise = 0.0;               ///< standard deviation of a sample, from differences of consecutive samples
   double sigma = 0.0;               ///< mean sigma of the samples; 0: none
   double fastest = 0.0;             ///< largest change in a second, of any column, between means of half a second
@@ -22,17 +22,17 @@ struct ExternalSurvey {
 };
 
 /// Samples of one sensor, in time order. Memory is bounded.
-class ExternalSurveyor {
+class ExternalCollector {
  public:
   void add(const ExternalSample& sample);
-  ExternalSurvey result() const;
+  ExternalStatistics result() const;
 
  private:
   void add_noise(const std::vector<double>& values);
   void add_to_mean(Timestamp t, const std::vector<double>& values);
 
-  StreamSurveyor stream_;
-  ExternalSurvey survey_;
+  StreamCollector stream_;
+  ExternalStatistics statistics_;
   std::vector<double> last_, before_;  ///< values of the last sample and of the one before
   Timestamp same_since_;
   double squares_ = 0.0, sigma_sum_ = 0.0;
@@ -42,7 +42,7 @@ class ExternalSurveyor {
   std::size_t mean_count_ = 0;
 };
 
-/// The surveys by the names of the sensors.
-using ExternalSurveys = std::map<std::string, ExternalSurvey, std::less<>>;
+/// The statistics by the names of the sensors.
+using ExternalStatisticsByName = std::map<std::string, ExternalStatistics, std::less<>>;
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/statistics/event_survey.hpp"
+#include "edged/checks/statistics/event_statistics.hpp"
 
 #include <algorithm>
 
@@ -26,10 +26,10 @@ cv::Size counted_area(cv::Size sensor) {
 
 }  // namespace
 
-EventSurveyor::EventSurveyor(cv::Size sensor)
+EventCollector::EventCollector(cv::Size sensor)
     : sensor_(sensor), pixels_(counted_area(sensor)), flicker_(counted_area(sensor)) {}
 
-void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
+void EventCollector::add(std::span<const Event> events, std::size_t every) {
   count(events);
   std::size_t next = every - 1 - std::min(skipped_, every - 1);
   for (; next < events.size(); next += every) {
@@ -44,7 +44,7 @@ void EventSurveyor::add(std::span<const Event> events, std::size_t every) {
   skipped_ = events.size() + every - 1 - next;
 }
 
-void EventSurveyor::count(std::span<const Event> events) {
+void EventCollector::count(std::span<const Event> events) {
   while (!events.empty()) {
     const Timestamp t = events.front().t;
     if (bin_end_ == Timestamp::min()) bin_end_ = t + kBin;
@@ -59,34 +59,34 @@ void EventSurveyor::count(std::span<const Event> events) {
   }
 }
 
-void EventSurveyor::Rates::close(std::size_t ended) {
+void EventCollector::Rates::close(std::size_t ended) {
   const double rate = static_cast<double>(bin_events) / to_seconds(kBin);
-  const auto band = std::ranges::upper_bound(EventSurvey::kRateBands, rate) - EventSurvey::kRateBands.begin();
+  const auto band = std::ranges::upper_bound(EventStatistics::kRateBands, rate) - EventStatistics::kRateBands.begin();
   ++band_bins[static_cast<std::size_t>(band)];
   band_bins[0] += ended - 1;
   peak = std::max(peak, std::exchange(bin_events, 0));
   bins += ended;
 }
 
-EventSurvey EventSurveyor::result() const {
+EventStatistics EventCollector::result() const {
   Rates rates = rates_;
   if (rates.bin_events > 0) rates.close(1);
-  EventSurvey survey;
-  survey.positive_share = share(positive_, events_);
-  survey.peak_rate_hz = static_cast<double>(rates.peak) / to_seconds(kBin);
-  for (std::size_t i = 0; i < survey.rate_shares.size(); ++i)
-    survey.rate_shares[i] = share(rates.band_bins[i], rates.bins);
-  survey.extent = extent_;
-  survey.active_share = share(pixels_.active(), area(sensor_.empty() ? extent_ : sensor_));
-  survey.hot_known = pixels_.known();
-  survey.hottest = pixels_.result();
-  survey.hot_pixels = survey.hottest.size();
+  EventStatistics statistics;
+  statistics.positive_share = share(positive_, events_);
+  statistics.peak_rate_hz = static_cast<double>(rates.peak) / to_seconds(kBin);
+  for (std::size_t i = 0; i < statistics.rate_shares.size(); ++i)
+    statistics.rate_shares[i] = share(rates.band_bins[i], rates.bins);
+  statistics.extent = extent_;
+  statistics.active_share = share(pixels_.active(), area(sensor_.empty() ? extent_ : sensor_));
+  statistics.hot_known = pixels_.known();
+  statistics.hottest = pixels_.result();
+  statistics.hot_pixels = statistics.hottest.size();
   std::size_t hot_events = 0;
-  for (const HotPixel& pixel : survey.hottest) hot_events += pixel.events;
-  survey.hot_share = share(hot_events, events_);
-  survey.flicker = flicker_.result();
-  survey.hottest.resize(std::min(survey.hottest.size(), kListedHotPixels));
-  return survey;
+  for (const HotPixel& pixel : statistics.hottest) hot_events += pixel.events;
+  statistics.hot_share = share(hot_events, events_);
+  statistics.flicker = flicker_.result();
+  statistics.hottest.resize(std::min(statistics.hottest.size(), kListedHotPixels));
+  return statistics;
 }
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/statistics/survey.hpp"
+#include "edged/checks/statistics/recording_statistics.hpp"
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -14,14 +14,14 @@ namespace {
 
 constexpr Duration kEventSilence = std::chrono::milliseconds(100);
 
-TruthSurvey survey_truth(const GroundTruth& truth) {
-  TruthSurvey survey;
-  survey.frame = truth.frame;
-  StreamSurveyor stream;
+TruthStatistics truth_statistics(const GroundTruth& truth) {
+  TruthStatistics statistics;
+  statistics.frame = truth.frame;
+  StreamCollector stream;
   for (const StampedPose& pose : truth.trajectory) stream.add(pose.t, pose.t);
-  survey.path_m = path_length(truth.trajectory, &StampedPose::T);
-  survey.stream = stream.result();
-  return survey;
+  statistics.path_m = path_length(truth.trajectory, &StampedPose::T);
+  statistics.stream = stream.result();
+  return statistics;
 }
 
 /// A recording of that camera alone.
@@ -38,15 +38,15 @@ DatasetInfo info_of(const RecordedCamera& camera, const DatasetInfo& of) {
 
 }  // namespace
 
-Duration Survey::overlap() const {
+Duration RecordingStatistics::overlap() const {
   Timestamp begin = Timestamp::min(), end = Timestamp::max();
-  for (const StreamSurvey* stream : {&events, &frames, &imu}) {
+  for (const StreamStatistics* stream : {&events, &frames, &imu}) {
     if (stream->count == 0) continue;
     begin = std::max(begin, *stream->begin);
     end = std::min(end, *stream->end);
   }
-  for (const Survey& camera : more) {
-    const StreamSurvey& stream = camera.info.has_events ? camera.events : camera.frames;
+  for (const RecordingStatistics& camera : more) {
+    const StreamStatistics& stream = camera.info.has_events ? camera.events : camera.frames;
     if (stream.count == 0) continue;
     begin = std::max(begin, *stream.begin);
     end = std::min(end, *stream.end);
@@ -54,9 +54,9 @@ Duration Survey::overlap() const {
   return begin == Timestamp::min() ? Duration(0) : end - begin;
 }
 
-std::optional<std::pair<Timestamp, Timestamp>> Survey::cameras() const {
+std::optional<std::pair<Timestamp, Timestamp>> RecordingStatistics::cameras() const {
   std::optional<std::pair<Timestamp, Timestamp>> span;
-  for (const StreamSurvey* stream : {&events, &frames}) {
+  for (const StreamStatistics* stream : {&events, &frames}) {
     if (stream->count == 0) continue;
     if (!span) span = {*stream->begin, *stream->end};
     span = {std::min(span->first, *stream->begin), std::max(span->second, *stream->end)};
@@ -64,16 +64,17 @@ std::optional<std::pair<Timestamp, Timestamp>> Survey::cameras() const {
   return span;
 }
 
-double Survey::imu_span_ratio() const {
+double RecordingStatistics::imu_span_ratio() const {
   const auto span = cameras();
   return span && span->second > span->first ? to_seconds(imu.length()) / to_seconds(span->second - span->first) : 0.0;
 }
 
-Surveyor::Surveyor(const DatasetInfo& info) : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {
+RecordingCollector::RecordingCollector(const DatasetInfo& info)
+    : info_(info), events_(kEventSilence), event_details_(info.event_sensor) {
   for (const RecordedCamera& camera : info.more_cameras) more_.emplace_back(info_of(camera, info));
 }
 
-void Surveyor::add(const Measurement& measurement, Detail detail, std::size_t every) {
+void RecordingCollector::add(const Measurement& measurement, Detail detail, std::size_t every) {
   if (const std::string* camera = camera_of(measurement); camera && !more_.empty())
     for (std::size_t i = 0; i < more_.size(); ++i)
       if (info_.more_cameras[i].name == *camera) return more_[i].add(measurement, detail, every);
@@ -100,7 +101,7 @@ void Surveyor::add(const Measurement& measurement, Detail detail, std::size_t ev
 
 /// True if the image moves, by comparison with an earlier frame: a rotation of a few degrees changes more pixels than
 /// noise and flicker.
-void Surveyor::watch_image(const Frame& frame) {
+void RecordingCollector::watch_image(const Frame& frame) {
   constexpr Duration kApart = std::chrono::milliseconds(300);
   constexpr double kNoise = 4.0, kOfContrast = 0.15;  // grey levels; share of their standard deviation
   if (compared_.size() == frame.image.size()) {
@@ -115,7 +116,7 @@ void Surveyor::watch_image(const Frame& frame) {
 }
 
 /// True if the events show motion of the image. Noise, flicker and walkers cause fewer events than a rotation.
-void Surveyor::watch_image(const EventBatch& batch) {
+void RecordingCollector::watch_image(const EventBatch& batch) {
   constexpr Duration kCounted = std::chrono::milliseconds(100);
   constexpr double kQuiet = 1.0;  // events a pixel and second
   const Timestamp now = batch.events.back().t;
@@ -126,29 +127,29 @@ void Surveyor::watch_image(const EventBatch& batch) {
   counted_from_ = now;
 }
 
-Survey Surveyor::so_far() const {
-  Survey survey;
-  survey.info = info_;
-  survey.events = events_.result();
-  survey.frames = frames_.result();
-  survey.imu = imu_.result();
-  survey.event_details = event_details_.result();
-  survey.imu_details = imu_details_.result();
-  survey.image_size = image_size_;
-  for (const Surveyor& camera : more_) survey.more.push_back(camera.so_far());
-  for (const auto& [name, surveyor] : external_) survey.external[name] = surveyor.result();
-  if (measured_frames_ > 0) survey.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
-  return survey;
+RecordingStatistics RecordingCollector::so_far() const {
+  RecordingStatistics statistics;
+  statistics.info = info_;
+  statistics.events = events_.result();
+  statistics.frames = frames_.result();
+  statistics.imu = imu_.result();
+  statistics.event_details = event_details_.result();
+  statistics.imu_details = imu_details_.result();
+  statistics.image_size = image_size_;
+  for (const RecordingCollector& camera : more_) statistics.more.push_back(camera.so_far());
+  for (const auto& [name, collector] : external_) statistics.external[name] = collector.result();
+  if (measured_frames_ > 0) statistics.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
+  return statistics;
 }
 
-Survey Surveyor::result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const {
-  Survey survey = so_far();
-  survey.info = dataset.info();
-  for (std::size_t i = 0; i < survey.more.size() && i < survey.info.more_cameras.size(); ++i)
-    survey.more[i].info.event_sensor = survey.info.more_cameras[i].sensor;
-  if (truth) survey.truth = survey_truth(*truth);
-  survey.repairs = dataset.repairs();
-  return survey;
+RecordingStatistics RecordingCollector::result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const {
+  RecordingStatistics statistics = so_far();
+  statistics.info = dataset.info();
+  for (std::size_t i = 0; i < statistics.more.size() && i < statistics.info.more_cameras.size(); ++i)
+    statistics.more[i].info.event_sensor = statistics.info.more_cameras[i].sensor;
+  if (truth) statistics.truth = truth_statistics(*truth);
+  statistics.repairs = dataset.repairs();
+  return statistics;
 }
 
 }  // namespace edged

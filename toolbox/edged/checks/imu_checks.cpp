@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/imu_diagnosis.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "edged/checks/check_groups.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
 namespace {
 
-void judge_imu_rate(const Survey& s, Findings& out) {
+void check_imu_rate(const CheckInput& input, Findings& out) {
+  const RecordingStatistics& s = input.recording;
   const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
   if (rate < 100.0)
     out.warn(fmt::format("IMU at {:.0f} Hz", rate),
@@ -32,7 +32,7 @@ void judge_imu_rate(const Survey& s, Findings& out) {
 }
 
 /// A working sensor does not repeat its readings to the last bit for long, neither all axes nor one of them.
-void judge_frozen(const char* sensor, const char* unit, const FrozenReadings& f, Findings& out) {
+void check_frozen(const char* sensor, const char* unit, const FrozenReadings& f, Findings& out) {
   constexpr Duration kShort = std::chrono::seconds(1);
   const std::string value = fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", f.value.x(), f.value.y(), f.value.z(), unit);
   if (f.dead())
@@ -50,13 +50,18 @@ void judge_frozen(const char* sensor, const char* unit, const FrozenReadings& f,
               "the driver repeats its last sample: remove these samples, then they count as a gap");
 }
 
-std::string lengths_text(const Survey& s, double cameras_s) {
+void check_frozen_readings(const CheckInput& input, Findings& out) {
+  check_frozen("gyro", "rad/s", input.recording.imu_details.gyro_frozen, out);
+  check_frozen("accelerometer", "m/s^2", input.recording.imu_details.accel_frozen, out);
+}
+
+std::string lengths_text(const RecordingStatistics& s, double cameras_s) {
   return fmt::format("the IMU covers {:.1f} s, the other sensors {:.1f} s", to_seconds(s.imu.length()), cameras_s);
 }
 
 /// The ratio of the durations of IMU and cameras, if it is close to two or a power of a thousand: another clock or
 /// unit.
-std::optional<double> known_span_ratio(const Survey& s, double cameras_s) {
+std::optional<double> known_span_ratio(const RecordingStatistics& s, double cameras_s) {
   constexpr double kNear = 0.02, kLeast_s = 1.0;
   const double ratio = s.imu_span_ratio();
   for (const double known : {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9})
@@ -73,30 +78,34 @@ bool turns_as_calibrated(const CameraCheck& check) {
   return so3::log(check.camera.T_B_C.rotation().conjugate() * R_B_C).norm() < kMost_deg * kDegree;
 }
 
-void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
-  constexpr double kTogether_s = 0.3, kSameLength = 0.05;
+/// By the rotation of camera and gyro. known: the ratio of their durations, where it is a known one.
+void tell_clock_rate(const CheckInput& input, const CameraCheck& measured, double cameras_s,
+                     const std::optional<double>& known, Findings& out) {
+  constexpr double kSameLength = 0.05;
+  const bool as_lasts = known && std::abs(measured.clock->rate / *known - 1.0) < kSameLength;
+  // A few seconds of rotation determine the rate to a few per cent only.
+  const double rate = as_lasts ? *known : measured.clock->rate;
+  const bool far_off = std::abs(rate - 1.0) > 0.1;
+  const bool lasts = far_off && std::abs(input.recording.imu_span_ratio() / rate - 1.0) < kSameLength;
+  out.imu_unusable(
+      fmt::format("{} clock runs at {:.{}f} times that of camera {}, by the rotation of both",
+                  lasts ? lengths_text(input.recording, cameras_s) + ": its" : "the IMU's", rate, far_off ? 2 : 3,
+                  measured.camera.name),
+      fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver", rate));
+}
+
+void check_clock(const CheckInput& input, Findings& out) {
+  constexpr double kTogether_s = 0.3;
+  const RecordingStatistics& s = input.recording;
   const auto visual = s.cameras();
   if (!visual) return;
-  const double cameras_s = to_seconds(visual->second - visual->first), ratio = s.imu_span_ratio();
+  const double cameras_s = to_seconds(visual->second - visual->first);
   const auto known = known_span_ratio(s, cameras_s);
-  const bool agrees = std::ranges::any_of(cameras, turns_as_calibrated);
+  const bool agrees = std::ranges::any_of(input.cameras, turns_as_calibrated);
   // Rates that differ by less than a tenth let a camera turn about as calibrated.
   const auto measured = std::ranges::find_if(
-      cameras, [=](const CameraCheck& c) { return c.clock && !(agrees && std::abs(c.clock->rate - 1.0) > 0.1); });
-  if (measured != cameras.end()) {
-    const bool as_lasts = known && std::abs(measured->clock->rate / *known - 1.0) < kSameLength;
-    // A few seconds of rotation determine the rate to a few per cent only.
-    const double rate = as_lasts ? *known : measured->clock->rate;
-    const std::string lengths = std::abs(ratio / rate - 1.0) < kSameLength && std::abs(rate - 1.0) > 0.1
-                                    ? lengths_text(s, cameras_s) + ": "
-                                    : "";
-    return out.imu_unusable(
-        fmt::format("{}{} clock runs at {:.{}f} times that of camera {}, by the rotation of both", lengths,
-                    lengths.empty() ? "the IMU's" : "its", rate, std::abs(rate - 1.0) > 0.1 ? 2 : 3,
-                    measured->camera.name),
-        fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver",
-                    rate));
-  }
+      input.cameras, [=](const CameraCheck& c) { return c.clock && !(agrees && std::abs(c.clock->rate - 1.0) > 0.1); });
+  if (measured != input.cameras.end()) return tell_clock_rate(input, *measured, cameras_s, known, out);
   if (agrees || !known || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
     return;
   const bool unit = *known > 10.0 || *known < 0.1;
@@ -109,13 +118,25 @@ void judge_clock(const Survey& s, const std::vector<CameraCheck>& cameras, Findi
 }
 
 /// True if gravity, which has a constant norm, is in the columns of the gyro and not in those of the accelerometer.
-bool columns_swapped(const ImuSurvey& imu) {
+bool columns_swapped(const ImuStatistics& imu) {
   const double calm = imu.calm ? imu.calm->gyro.norm() : imu.mean_gyro;  // a mean, so that motion does not count
   return imu.mean_gyro > 8.0 && imu.mean_gyro < 16.0 && calm > 8.5 && calm < 11.5 &&
          imu.mean_accel < 0.6 * imu.mean_gyro;
 }
 
-void judge_accel_unit(const ImuSurvey& imu, Findings& out) {
+void check_columns(const CheckInput& input, Findings& out) {
+  const ImuStatistics& imu = input.recording.imu_details;
+  if (columns_swapped(imu))
+    out.error(
+        fmt::format("gyro and accelerometer are swapped: the gyro has gravity (mean {:.2f}), the accelerometer a mean "
+                    "of {:.2f}",
+                    imu.mean_gyro, imu.mean_accel),
+        "exchange the columns: an imu.txt has t ax ay az gx gy gz, EuRoC's data.csv t gx gy gz ax ay az");
+}
+
+void check_accel_unit(const CheckInput& input, Findings& out) {
+  const ImuStatistics& imu = input.recording.imu_details;
+  if (columns_swapped(imu) || imu.accel_frozen.dead()) return;
   const double g = imu.mean_accel;
   const double calm = imu.calm ? imu.calm->accel.norm() : g;  // a mean, so that motion does not count
   if (g > 0.7 && g < 2.5 && calm > 0.8 && calm < 1.25)
@@ -131,10 +152,12 @@ void judge_accel_unit(const ImuSurvey& imu, Findings& out) {
     out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
 }
 
-void judge_gyro_unit(const ImuSurvey& imu, const std::vector<CameraCheck>& cameras, Findings& out) {
+void check_gyro_unit(const CheckInput& input, Findings& out) {
   constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
-  const bool compared = std::ranges::any_of(cameras, &CameraCheck::sure);
-  if (std::ranges::any_of(cameras, &CameraCheck::in_degrees))
+  const ImuStatistics& imu = input.recording.imu_details;
+  if (columns_swapped(imu) || imu.gyro_frozen.dead()) return;
+  const bool compared = std::ranges::any_of(input.cameras, &CameraCheck::sure);
+  if (std::ranges::any_of(input.cameras, &CameraCheck::in_degrees))
     out.error("gyro in deg/s: it turns 57 times as fast as the camera", "multiply it by pi / 180");
   else if (!compared && imu.mean_gyro > kFastest)
     out.error(fmt::format("gyro probably in deg/s: its mean is {:.1f}", imu.mean_gyro), "multiply it by pi / 180");
@@ -142,6 +165,9 @@ void judge_gyro_unit(const ImuSurvey& imu, const std::vector<CameraCheck>& camer
     out.good(fmt::format("gyro with a mean of {:.2f}, highest {:.2f} rad/s{}", imu.mean_gyro, imu.max_gyro,
                          compared ? "" : " (its unit is not checked against a camera)"));
 }
+
+constexpr Check kImuChecks[] = {check_imu_rate, check_clock,      check_frozen_readings,
+                                check_columns,  check_accel_unit, check_gyro_unit};
 
 }  // namespace
 
@@ -151,21 +177,9 @@ bool CameraCheck::in_degrees() const {
   return ratio > 0.5 && ratio < 2.0;
 }
 
-void judge_imu(const Survey& s, const std::vector<CameraCheck>& cameras, Findings& out) {
-  if (s.imu.count == 0) return;
-  judge_imu_rate(s, out);
-  judge_clock(s, cameras, out);
-  const ImuSurvey& imu = s.imu_details;
-  judge_frozen("gyro", "rad/s", imu.gyro_frozen, out);
-  judge_frozen("accelerometer", "m/s^2", imu.accel_frozen, out);
-  if (columns_swapped(imu))
-    return out.error(
-        fmt::format("gyro and accelerometer are swapped: the gyro has gravity (mean {:.2f}), the accelerometer a mean "
-                    "of {:.2f}",
-                    imu.mean_gyro, imu.mean_accel),
-        "exchange the columns: an imu.txt has t ax ay az gx gy gz, EuRoC's data.csv t gx gy gz ax ay az");
-  if (!imu.accel_frozen.dead()) judge_accel_unit(imu, out);
-  if (!imu.gyro_frozen.dead()) judge_gyro_unit(imu, cameras, out);
+void check_imu(const CheckInput& input, Findings& out) {
+  if (input.recording.imu.count == 0) return;
+  for (const Check check : kImuChecks) check(input, out);
 }
 
 }  // namespace edged

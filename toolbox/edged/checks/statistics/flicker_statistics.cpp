@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/statistics/flicker_survey.hpp"
+#include "edged/checks/statistics/flicker_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,13 +15,13 @@ constexpr double kFullSwing = 0.8;
 
 }  // namespace
 
-FlickerSurveyor::FlickerSurveyor(cv::Size grid) : grid_(grid), columns_((grid.width >> kCellBits) + 1) {}
+FlickerCollector::FlickerCollector(cv::Size grid) : grid_(grid), columns_((grid.width >> kCellBits) + 1) {}
 
-void FlickerSurveyor::make_cells() {
+void FlickerCollector::make_cells() {
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>((grid_.height >> kCellBits) + 1));
 }
 
-void FlickerSurveyor::end_window() {
+void FlickerCollector::end_window() {
   ++windows_;
   if (detector_.lamp()) {
     const double hz = detector_.lamp()->hz;
@@ -42,10 +42,10 @@ void FlickerSurveyor::end_window() {
   for (PolaritySpectrum& cell : cells_) cell.clear();
 }
 
-std::optional<FlickerSurvey> FlickerSurveyor::result() const {
+std::optional<FlickerStatistics> FlickerCollector::result() const {
   if (flickering_windows_ == 0) return std::nullopt;
-  return FlickerSurvey{hz_ / flickering_windows_, static_cast<double>(flickering_windows_) / windows_,
-                       flicker_events_ / std::max(1.0, events_), flickering_cells_ / std::max(1.0, cells_seen_)};
+  return FlickerStatistics{hz_ / flickering_windows_, static_cast<double>(flickering_windows_) / windows_,
+                           flicker_events_ / std::max(1.0, events_), flickering_cells_ / std::max(1.0, cells_seen_)};
 }
 
 }  // namespace edged

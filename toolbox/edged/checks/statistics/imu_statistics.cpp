@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/checks/statistics/imu_survey.hpp"
+#include "edged/checks/statistics/imu_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,19 +28,43 @@ double deviation(double squares, const Eigen::Vector3d& sum, std::size_t count) 
 
 }  // namespace
 
-void ImuSurveyor::Sums::add(const Eigen::Vector3d& w, const Eigen::Vector3d& a) {
+void FrozenDetector::add(Timestamp t, const Eigen::Vector3d& value) {
+  if (!begun_) {
+    begun_ = true;
+    first_ = all_since_ = t;
+    axis_since_.fill(t);
+    result_.value = value;
+    result_.since = t;
+  } else {
+    for (std::size_t axis = 0; axis < axis_since_.size(); ++axis) {
+      const auto i = static_cast<Eigen::Index>(axis);
+      if (value[i] != last_[i]) axis_since_[axis] = t;
+      result_.axes[axis] = std::max(result_.axes[axis], t - axis_since_[axis]);
+    }
+    if (value != last_) all_since_ = t;
+    if (t - all_since_ > result_.longest) {
+      result_.longest = t - all_since_;
+      result_.since = all_since_;
+      result_.value = value;
+    }
+  }
+  last_ = value;
+  result_.covered = t - first_;
+}
+
+void ImuCollector::Sums::add(const Eigen::Vector3d& w, const Eigen::Vector3d& a) {
   ++count;
   gyro += w, accel += a;
   gyro_squares += w.squaredNorm(), accel_squares += a.squaredNorm();
 }
 
-void ImuSurveyor::Sums::add(const Sums& other) {
+void ImuCollector::Sums::add(const Sums& other) {
   count += other.count;
   gyro += other.gyro, accel += other.accel;
   gyro_squares += other.gyro_squares, accel_squares += other.accel_squares;
 }
 
-void ImuSurveyor::add(const ImuSample& sample) {
+void ImuCollector::add(const ImuSample& sample) {
   if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
   if (part_.count > 0 && sample.t >= part_begin_ + kPart) {
     end_part();
@@ -57,7 +81,7 @@ void ImuSurveyor::add(const ImuSample& sample) {
   max_gyro_ = std::max(max_gyro_, sample.gyro_B.norm());
 }
 
-void ImuSurveyor::end_part() {
+void ImuCollector::end_part() {
   const Sums part = std::exchange(part_, Sums());
   if (part.count < kFewestOfPart) {
     current_.reset(), rest_.reset();
@@ -75,14 +99,14 @@ void ImuSurveyor::end_part() {
   if (current_->means.count == kParts) end_stretch();
 }
 
-bool ImuSurveyor::at_rest(const Stretch& stretch) {
+bool ImuCollector::at_rest(const Stretch& stretch) {
   const Sums& s = stretch.means;
   return deviation(s.gyro_squares, s.gyro, s.count) < kRestGyro &&
          deviation(s.accel_squares, s.accel, s.count) < kRestAccel &&
          s.gyro.norm() / static_cast<double>(s.count) < (stretch.image_moves ? kMostBiasInMotion : kMostBias);
 }
 
-void ImuSurveyor::end_stretch() {
+void ImuCollector::end_stretch() {
   Stretch ended = *std::exchange(current_, std::nullopt);
   ended.image_moves = std::exchange(image_moves_, false);
   const auto spread = [](const Stretch& s) { return deviation(s.means.gyro_squares, s.means.gyro, s.means.count); };
@@ -105,17 +129,17 @@ void ImuSurveyor::end_stretch() {
   if (!longest_rest_ || rest_->means.count > longest_rest_->means.count) longest_rest_ = rest_;
 }
 
-ImuSurvey ImuSurveyor::result() const {
-  ImuSurvey survey;
-  if (count_ == 0) return survey;
-  survey.mean_accel = accel_sum_ / static_cast<double>(count_);
-  survey.mean_gyro = gyro_sum_ / static_cast<double>(count_);
-  survey.max_gyro = max_gyro_;
-  survey.gyro_frozen = gyro_frozen_.result();
-  survey.accel_frozen = accel_frozen_.result();
+ImuStatistics ImuCollector::result() const {
+  ImuStatistics statistics;
+  if (count_ == 0) return statistics;
+  statistics.mean_accel = accel_sum_ / static_cast<double>(count_);
+  statistics.mean_gyro = gyro_sum_ / static_cast<double>(count_);
+  statistics.max_gyro = max_gyro_;
+  statistics.gyro_frozen = gyro_frozen_.result();
+  statistics.accel_frozen = accel_frozen_.result();
   if (calmest_) {
     const auto n = static_cast<double>(calmest_->means.count);
-    survey.calm = {calmest_->begin, calmest_->means.gyro / n, calmest_->means.accel / n};
+    statistics.calm = {calmest_->begin, calmest_->means.gyro / n, calmest_->means.accel / n};
   }
   if (longest_rest_) {
     const Sums &means = longest_rest_->means, &steps = longest_rest_->differences;
@@ -125,14 +149,14 @@ ImuSurvey ImuSurveyor::result() const {
     const auto density = [&](double squares) {
       return std::sqrt(squares / (3 * static_cast<double>(steps.count)) / 2 * to_seconds(kPart));
     };
-    survey.rest = {longest_rest_->begin,
-                   longest_rest_->end - longest_rest_->begin,
-                   density(steps.gyro_squares),
-                   density(steps.accel_squares),
-                   means.gyro / n,
-                   means.accel / n};
+    statistics.rest = {longest_rest_->begin,
+                       longest_rest_->end - longest_rest_->begin,
+                       density(steps.gyro_squares),
+                       density(steps.accel_squares),
+                       means.gyro / n,
+                       means.accel / n};
   }
-  return survey;
+  return statistics;
 }
 
 }  // namespace edged

@@ -4,13 +4,45 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 
-#include "edged/checks/statistics/frozen_readings.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
+
+/// Readings that a sensor of three axes repeats to the last bit. The noise of a working one prevents this.
+struct FrozenReadings {
+  Duration covered{0};                              ///< from the first to the last sample
+  Duration longest{0};                              ///< the longest time in which no axis changed
+  Timestamp since;                                  ///< begin of that time
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();  ///< reading in that time
+  std::array<Duration, 3> axes{};                   ///< the longest time in which that axis did not change
+
+  /// True if no axis changes, except for a short part.
+  bool dead() const { return is_whole(longest); }
+  bool dead(std::size_t axis) const { return is_whole(axes.at(axis)); }
+
+ private:
+  bool is_whole(Duration constant) const {
+    return covered >= std::chrono::milliseconds(500) && constant >= covered * 9 / 10;
+  }
+};
+
+/// Samples of one sensor, in time order.
+class FrozenDetector {
+ public:
+  void add(Timestamp t, const Eigen::Vector3d& value);
+  const FrozenReadings& result() const { return result_; }
+
+ private:
+  bool begun_ = false;
+  Timestamp first_, all_since_;
+  std::array<Timestamp, 3> axis_since_;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+  FrozenReadings result_;
+};
 
 /// Means of the half second in which the gyro varies least.
 struct ImuCalm {
@@ -30,7 +62,7 @@ struct ImuRest {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< mean: upwards [m/s^2]
 };
 
-struct ImuSurvey {
+struct ImuStatistics {
   std::optional<ImuCalm> calm;             ///< nothing if no half second has samples in all of its parts
   std::optional<ImuRest> rest;             ///< nothing without rest, as motion hides the noise
   double mean_accel = 0.0;                 ///< length of the specific force [m/s^2]
@@ -39,19 +71,19 @@ struct ImuSurvey {
 };
 
 /// Samples must be in time order. Memory is bounded.
-class ImuSurveyor {
+class ImuCollector {
  public:
   void add(const ImuSample& sample);
   /// To be called while the image of a camera moves: then a constant rate is a rotation, not a bias.
   void image_moves() { image_moves_ = true; }
-  ImuSurvey result() const;
+  ImuStatistics result() const;
 
  private:
   /// Sums of samples, or of means of samples.
   struct Sums {
     std::size_t count = 0;
     Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
-    double gyro_squares = 0.0, accel_squares = 0.0;  ///< of all three axes
+    double gyro_squares = 0.0, accel_squares = 0.0;  ///< sums over all three axes
 
     void add(const Eigen::Vector3d& w, const Eigen::Vector3d& a);
     void add(const Sums& other);
@@ -71,7 +103,8 @@ class ImuSurveyor {
   Timestamp part_begin_;
   Sums part_;
   std::optional<Stretch> current_, calmest_, rest_, longest_rest_;
-  Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero(), last_accel_ = Eigen::Vector3d::Zero();  ///< of the last part
+  Eigen::Vector3d last_gyro_ = Eigen::Vector3d::Zero(),
+                  last_accel_ = Eigen::Vector3d::Zero();  ///< means of the last part
   FrozenDetector gyro_frozen_, accel_frozen_;
   std::size_t count_ = 0;
   double accel_sum_ = 0.0, gyro_sum_ = 0.0, max_gyro_ = 0.0;

@@ -1,0 +1,305 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Each problem is reported with its remedy, and a good recording has none.
+#include "edged/checks/checks.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace edged {
+namespace {
+
+using ::testing::HasSubstr;
+using enum Severity;
+
+StreamStatistics stream(std::size_t count, double begin_s, double end_s) {
+  StreamStatistics s;
+  s.count = count;
+  s.begin = timestamp_from_seconds(begin_s), s.end = timestamp_from_seconds(end_s);
+  s.typical_step = (*s.end - *s.begin) / static_cast<Duration::rep>(count);
+  return s;
+}
+
+RecordingStatistics healthy() {
+  RecordingStatistics s;
+  s.events = stream(1'000'000, 0, 10);
+  s.frames = stream(200, 0, 10);
+  s.imu = stream(2000, 0, 10);
+  s.event_details.positive_share = 0.5;
+  s.imu_details.mean_accel = 9.8, s.imu_details.mean_gyro = 0.3, s.imu_details.max_gyro = 1.0;
+  s.mean_brightness = 100;
+  return s;
+}
+
+CameraCheck agreeing() {
+  GyroAgreement found;
+  found.turns = 200, found.turning = std::chrono::seconds(10), found.unexplained = 0.1, found.time_sigma_s = 1e-4,
+  found.rotation_sigma = 2e-3;
+  found.rotation_covariance = 4e-6 * Eigen::Matrix3d::Identity();
+  return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
+}
+
+/// The remedy of the first finding of that severity that contains this text.
+std::string remedy_of(const std::vector<Finding>& findings, Severity severity, const std::string& text) {
+  for (const Finding& f : findings)
+    if (f.severity == severity && f.text.find(text) != std::string::npos) return f.remedy;
+  return "NO SUCH FINDING";
+}
+
+std::string remedy_of(const RecordingStatistics& recording, const std::vector<CameraCheck>& cameras, Severity severity,
+                      const std::string& text) {
+  return remedy_of(check_recording({recording, !cameras.empty(), cameras}), severity, text);
+}
+
+TEST(Checks, OfAHealthyRecordingIsGoodAllOver) {
+  for (const Finding& f : check_recording({healthy(), true, {agreeing()}})) EXPECT_EQ(f.severity, Good) << f.text;
+}
+
+TEST(Checks, NamesTheFrequencyOfALampAndWhatItTakes) {
+  RecordingStatistics s = healthy();
+  s.event_details.flicker = FlickerStatistics{.hz = 100.2, .time_share = 1.0, .event_share = 0.7, .image_share = 0.4};
+  const std::string text =
+      "a lamp flickers at 100 Hz: about 70 % of the events, in 40 % of the image, 100 % of the time";
+  EXPECT_THAT(remedy_of(s, {}, Warning, text), HasSubstr("direct current"));
+  s.event_details.flicker->event_share = 0.02;
+  EXPECT_EQ(remedy_of(s, {}, Note, "a lamp flickers at 100 Hz"), "");
+}
+
+TEST(Checks, NamesClocksThatDoNotOverlap) {
+  RecordingStatistics s = healthy();
+  s.imu = stream(2000, 1000, 1010);
+  EXPECT_THAT(remedy_of(s, {}, Error, "IMU 1000.000 to 1010.000 s"), HasSubstr("one clock"));
+  s.imu = stream(2000, 5, 15);
+  EXPECT_THAT(remedy_of(s, {}, Warning, "cover 5.0 s only"), HasSubstr("is not used"));
+}
+
+TEST(Checks, TellsAShortRecordingFromOneOfWhichSensorsAreMissing) {
+  RecordingStatistics s = healthy();
+  s.imu = stream(100, 0, 0.5), s.events = stream(1000, 0, 0.5), s.frames = stream(10, 0, 0.5);
+  EXPECT_THAT(remedy_of(s, {}, Warning, "cover 0.50 s"), HasSubstr("record more"));
+  s = healthy();
+  s.imu = {}, s.frames = stream(200, 50, 60);
+  EXPECT_THAT(remedy_of(s, {}, Error, "do not overlap: events 0.000"), HasSubstr("one clock"));
+}
+
+TEST(Checks, NamesAMissingSlowOrHolyImu) {
+  RecordingStatistics s = healthy();
+  s.imu = {};
+  EXPECT_THAT(remedy_of(s, {}, Error, "no IMU samples"), HasSubstr("--topic imu"));
+  s = healthy();
+  s.imu = stream(300, 0, 10);
+  EXPECT_THAT(remedy_of(s, {}, Warning, "IMU at 30 Hz"), HasSubstr("200 Hz"));
+  s = healthy();
+  s.imu.gaps = 2, s.imu.missing = std::chrono::milliseconds(700);
+  s.imu.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(600)}};
+  EXPECT_THAT(remedy_of(s, {}, Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
+}
+
+TEST(Checks, NamesAnImuWhoseClockRunsAtAnotherRateAndNoCalibration) {
+  CameraCheck check = agreeing();
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  check.clock = ClockRate{2.0, 0.99};
+  RecordingStatistics s = healthy();
+  s.imu = stream(2000, 0, 20);
+  const std::vector<Finding> findings = check_recording({s, true, {check}});
+  EXPECT_THAT(
+      remedy_of(findings, Error, "the IMU covers 20.0 s, the other sensors 10.0 s: its clock runs at 2.00 times"),
+      HasSubstr("--imu-clock-rate 2.000"));
+  EXPECT_EQ(std::ranges::count(findings, Error, &Finding::severity), 1) << "no camera is blamed beside it";
+  check.clock = ClockRate{1.02, 0.99};
+  s.imu = stream(2000, 0, 10.2);
+  EXPECT_THAT(remedy_of(s, {check}, Error, "the IMU's clock runs at 1.020 times"), HasSubstr("--imu-clock-rate 1.020"));
+}
+
+TEST(Checks, BelievesNoOtherClockWhereACameraTurnsAsCalibrated) {
+  CameraCheck short_one = agreeing();
+  short_one.clock = ClockRate{2.11, 0.95};
+  for (const Finding& f : check_recording({healthy(), true, {agreeing(), short_one}}))
+    EXPECT_EQ(f.severity, Good) << f.text;
+}
+
+TEST(Checks, NamesAnotherClockOrUnitByTheLengthsWhereNoCameraTells) {
+  RecordingStatistics s = healthy();
+  s.imu = stream(2000, 0, 5);
+  EXPECT_THAT(remedy_of(s, {}, Error, "its clock runs at 0.5 times theirs"), HasSubstr("--imu-clock-rate 0.5"));
+  s.imu = stream(2000, 0, 10'000);
+  EXPECT_THAT(remedy_of(s, {}, Error, "its stamps are in another unit"), HasSubstr("unit"));
+  s.imu = stream(2000, 5, 25);
+  EXPECT_EQ(remedy_of(s, {}, Error, "clock"), "NO SUCH FINDING") << "it began later";
+}
+
+TEST(Checks, NamesADeadGyroAndNoCamera) {
+  RecordingStatistics s = healthy();
+  CameraCheck check = agreeing();
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  FrozenReadings& gyro = s.imu_details.gyro_frozen;
+  gyro.covered = gyro.longest = std::chrono::seconds(10);
+  gyro.axes.fill(gyro.covered);
+  EXPECT_THAT(remedy_of(s, {check}, Error, "gyro is constant zero"), HasSubstr("topic"));
+  EXPECT_EQ(remedy_of(s, {check}, Error, "camera"), "NO SUCH FINDING");
+  gyro.value = {0.1, 0, 0};
+  EXPECT_THAT(remedy_of(s, {}, Error, "gyro does not change: it is (0.1, 0, 0) rad/s"), HasSubstr("driver"));
+  gyro.longest = std::chrono::seconds(3), gyro.axes = {Duration(3), Duration(3), gyro.covered};
+  EXPECT_THAT(remedy_of(s, {}, Error, "gyro: its z axis does not change"), HasSubstr("columns"));
+  EXPECT_THAT(remedy_of(s, {}, Error, "gyro does not change for 3.0 s"), HasSubstr("gap"));
+}
+
+TEST(Checks, NamesWrongUnits) {
+  RecordingStatistics s = healthy();
+  s.imu_details.mean_accel = 1.0;
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0, 0, 0}, .accel = {0, 0, 1}};
+  EXPECT_THAT(remedy_of(s, {}, Error, "accelerometer in g"), HasSubstr("9.80665"));
+  s.imu_details.mean_accel = 9806;
+  EXPECT_THAT(remedy_of(s, {}, Error, "mm/s^2"), HasSubstr("1000"));
+  s.imu_details.mean_accel = 0.9;
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0, 0, 0}, .accel = {0.1, 0, 0}};
+  EXPECT_THAT(remedy_of(s, {}, Error, "without gravity"), HasSubstr("specific force"));
+  s = healthy();
+  CameraCheck check = agreeing();
+  check.agreement->gyro_scale = 57.0;
+  EXPECT_THAT(remedy_of(s, {check}, Error, "gyro in deg/s"), HasSubstr("pi / 180"));
+  s.imu_details.mean_gyro = 20;
+  EXPECT_THAT(remedy_of(s, {}, Error, "probably in deg/s"), HasSubstr("pi / 180"));
+}
+
+TEST(Checks, NamesACalibrationThatContradictsTheGyro) {
+  CameraCheck check = agreeing();
+  check.agreement->time_offset = std::chrono::milliseconds(12);
+  EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "+12.0 ms"), HasSubstr("0.0120"));
+  check = agreeing();
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "contradicts the gyro by 85.9 deg +- 0.1 deg"),
+              HasSubstr("85.9 deg about the camera's axis (0.00, 0.00, 1.00)"));
+  check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "the inverse fits"), HasSubstr("other way"));
+  check = agreeing();
+  check.agreement->gyro_scale = 0.5;
+  EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "0.50 times"), HasSubstr("focal length"));
+  check.agreement->unexplained = 0.4;
+  EXPECT_EQ(remedy_of(healthy(), {check}, Warning, "0.50 times"), "NO SUCH FINDING");
+}
+
+TEST(Checks, NamesAGyroWhoseScaleIsOffAndAnAccelerometerThatPointsTheOtherWay) {
+  CameraCheck check = agreeing();
+  check.agreement->gyro_scale = 1.1;
+  check.agreement->scale_sigma = 0.005;
+  check.agreement->scale_unexplained = 0.02;
+  EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "reads 10.0 % +- 0.5 % too much"),
+              HasSubstr("divide the gyro by 1.100"));
+  check.agreement->gyro_scale = 1.02;
+  EXPECT_EQ(remedy_of(healthy(), {check}, Good, "scale agrees with it to 2.0 %"), "");
+  check.agreement->accel = {100, -0.7};
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "moves against it"), HasSubstr("multiply it by -1"));
+}
+
+TEST(Checks, GuessesTheRotationOfACameraThatHasNone) {
+  CameraCheck check = agreeing();
+  check.has_extrinsics = false;
+  check.agreement->R_B_C << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  EXPECT_THAT(remedy_of(healthy(), {check}, Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+}
+
+TEST(Checks, NamesWhatIsMissingOrOfAnotherSize) {
+  RecordingStatistics s = healthy();
+  s.events = s.frames = {};
+  EXPECT_THAT(remedy_of(s, {}, Error, "neither events nor frames"), HasSubstr("--topic"));
+  s = healthy();
+  s.image_size = cv::Size(346, 260);
+  EXPECT_THAT(remedy_of(s, {agreeing()}, Error, "recorded 346 x 260"), HasSubstr("resolution"));
+  EXPECT_THAT(remedy_of(healthy(), {}, Note, "no calibration"), HasSubstr("--rig"));
+  EXPECT_EQ(remedy_of(check_recording({healthy(), true, {}}), Note, "no camera that could be compared"), "");
+}
+
+TEST(Checks, GivesNoNumberForAShiftBeyondItsSearch) {
+  CameraCheck check = agreeing();
+  check.agreement->at_bound = true;
+  EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "100 ms or more off"), HasSubstr("clocks"));
+}
+
+TEST(Checks, JudgesNoCalibrationByMotionThatSaysNothing) {
+  CameraCheck check = agreeing();
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  check.agreement->unexplained = 0.8;
+  EXPECT_EQ(remedy_of(healthy(), {check}, Note, "80 % of its turning unexplained"), "");
+}
+
+TEST(Checks, JudgesNoCalibrationByAShortTurning) {
+  CameraCheck check = agreeing();
+  check.least_turning = std::chrono::seconds(3);
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  EXPECT_NE(remedy_of(healthy(), {check}, Error, "contradicts the gyro"), "NO SUCH FINDING");
+  check.agreement->turning = std::chrono::milliseconds(1800);
+  const std::vector<Finding> findings = check_recording({healthy(), true, {check}});
+  EXPECT_THAT(remedy_of(findings, Note, "turns for 1.8 s only"), HasSubstr("record more"));
+  EXPECT_EQ(std::ranges::count(findings, Error, &Finding::severity), 0);
+  check.agreement->R_B_C.setIdentity();
+  for (const Finding& f : check_recording({healthy(), true, {check}})) EXPECT_EQ(f.severity, Good) << f.text;
+}
+
+TEST(Checks, JudgesARotationBySizeAndSigma) {
+  const auto said = [](double degrees, double sigma_deg) {
+    CameraCheck check = agreeing();
+    check.camera.T_B_C = SE3(so3::exp(Eigen::Vector3d(0.6, 0, -0.8) * degrees * std::numbers::pi / 180), {0, 0, 0});
+    check.agreement->rotation_covariance =
+        std::pow(sigma_deg * std::numbers::pi / 180, 2) * Eigen::Matrix3d::Identity();
+    Severity worst = Good;
+    for (const Finding& f : check_recording({healthy(), true, {check}})) worst = std::max(worst, f.severity);
+    return worst;
+  };
+  EXPECT_EQ(said(1, 0.1), Good);
+  EXPECT_EQ(said(5, 0.3), Warning);
+  EXPECT_EQ(said(5, 3.0), Note) << "neither right nor wrong";
+  EXPECT_EQ(said(10, 0.3), Error);
+  EXPECT_EQ(said(90, 3.0), Error);
+}
+
+TEST(Checks, NeverBlamesTheDirectionOfASmallRotation) {
+  for (const double angle : {0.1, -0.1}) {
+    CameraCheck check = agreeing();
+    check.camera.T_B_C = SE3(so3::exp({0.01, 0, angle}), {0, 0, 0});
+    EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "contradicts the gyro by 5.8 deg"),
+                HasSubstr("calibrate again"));
+  }
+}
+
+TEST(Checks, JudgesWhatIsKnownOfARotationAboutOneAxis) {
+  CameraCheck check = agreeing();
+  check.agreement->rotation_covariance(2, 2) = 0.5;
+  check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
+  std::vector<Finding> findings = check_recording({healthy(), true, {check}});
+  EXPECT_EQ(remedy_of(findings, Note, "about one axis only, (0.00, 0.00, 1.00)"), "");
+  EXPECT_EQ(remedy_of(findings, Good, "its rotation agrees with the gyro to 0.0 deg"), "");
+  check.agreement->R_B_C = so3::exp({0.2, 0, 0}).toRotationMatrix();
+  EXPECT_NE(remedy_of(healthy(), {check}, Error, "contradicts the gyro by 11.5 deg"), "");
+}
+
+TEST(Checks, NamesSwappedColumnsAndMirroredAxesAsSuch) {
+  RecordingStatistics s = healthy();
+  s.imu_details.mean_gyro = 9.9, s.imu_details.max_gyro = 14.0, s.imu_details.mean_accel = 0.4;
+  s.imu_details.calm = ImuCalm{.begin = {}, .gyro = {0.3, -0.2, 9.8}, .accel = {0.01, 0, 0}};
+  const std::vector<Finding> findings = check_recording({s, false, {}});
+  EXPECT_THAT(remedy_of(findings, Error, "gyro and accelerometer are swapped"), HasSubstr("t ax ay az gx gy gz"));
+  EXPECT_EQ(std::ranges::count(findings, Error, &Finding::severity), 1) << "no unit is reported beside it";
+  CameraCheck check = agreeing();
+  check.agreement->mirrored = true;
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "turns the other way"), HasSubstr("sign"));
+}
+
+TEST(Checks, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {
+  RecordingStatistics s = healthy();
+  s.event_details.hot_share = 0.2, s.event_details.hottest = {{3, 4, 1000}};
+  s.event_details.positive_share = 1.0;
+  s.mean_brightness = 4;
+  s.truth = TruthStatistics{stream(100, 500, 510), "body", 3.0};
+  const std::vector<Finding> findings = check_recording({s, false, {}});
+  EXPECT_THAT(remedy_of(findings, Warning, "most at (3, 4)"), HasSubstr("mask"));
+  EXPECT_THAT(remedy_of(findings, Warning, "100.0 % of the events are positive"), HasSubstr("polarities"));
+  EXPECT_THAT(remedy_of(findings, Note, "frames are dark"), HasSubstr("expose"));
+  EXPECT_THAT(remedy_of(findings, Warning, "ground truth does not overlap"), HasSubstr("clock"));
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The content of a recording, determined in one pass.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "edged/checks/statistics/event_statistics.hpp"
+#include "edged/checks/statistics/external_statistics.hpp"
+#include "edged/checks/statistics/imu_statistics.hpp"
+#include "edged/checks/statistics/stream_statistics.hpp"
+#include "edged/dataset.hpp"
+
+namespace edged {
+
+struct TruthStatistics {
+  StreamStatistics stream;
+  std::string frame;    ///< whose pose it is
+  double path_m = 0.0;  ///< length of the path
+};
+
+struct RecordingStatistics {
+  DatasetInfo info;
+  StreamStatistics events, frames, imu;
+  EventStatistics event_details;
+  ImuStatistics imu_details;
+  cv::Size image_size;           ///< size of the first image
+  double mean_brightness = 0.0;  ///< mean over all images, 0 to 255
+  ExternalStatisticsByName external;
+  std::optional<TruthStatistics> truth;
+  std::map<std::string, std::size_t> repairs;
+  /// The cameras beside the first of a kind, in the order of DatasetInfo::more_cameras: each has its events or
+  /// frames alone.
+  std::vector<RecordingStatistics> more;
+  /// The name of such a camera.
+  const std::string& camera() const { return info.has_events ? info.event_camera : info.frame_camera; }
+
+  /// Time that all present sensors cover; negative: minus the gap between them.
+  Duration overlap() const;
+  /// From the first to the last stamp of events and frames.
+  std::optional<std::pair<Timestamp, Timestamp>> cameras() const;
+  /// Duration of the IMU over that of events and frames; 0 without these.
+  double imu_span_ratio() const;
+};
+
+/// Collects measurements in the order of the recording, in bounded memory.
+class RecordingCollector {
+ public:
+  explicit RecordingCollector(const DatasetInfo& info);
+
+  enum class Detail {
+    All,
+    Stamps,  ///< only the stamps of events and frames: cheap, if a part of them is collected with All
+  };
+  /// every: that of EventCollector::add.
+  void add(const Measurement& measurement, Detail detail = Detail::All, std::size_t every = 1);
+  /// The statistics of the measurements so far, without ground truth and repairs.
+  RecordingStatistics so_far() const;
+  /// The complete statistics, after the last measurement. truth: that of the dataset, which is slow to read.
+  RecordingStatistics result(const Dataset& dataset, const std::optional<GroundTruth>& truth) const;
+
+ private:
+  void watch_image(const Frame& frame);
+  void watch_image(const EventBatch& batch);
+
+  DatasetInfo info_;
+  StreamCollector events_, frames_, imu_;
+  EventCollector event_details_;
+  ImuCollector imu_details_;
+  std::vector<RecordingCollector> more_;  ///< one for each further camera
+  std::map<std::string, ExternalCollector> external_;
+  cv::Size image_size_;
+  double brightness_sum_ = 0.0;
+  std::size_t measured_frames_ = 0;  ///< in that sum
+  cv::Mat compared_;                 ///< the frame that later ones are compared with
+  Timestamp compared_at_, counted_from_;
+  std::size_t counted_ = 0;  ///< events since that frame
+};
+
+}  // namespace edged
