@@ -13,7 +13,7 @@ namespace edged {
 struct ViewCoverage {
   static constexpr int kColumns = 8, kRows = 6;
   std::vector<std::size_t> corners;  ///< in each cell of the image, row by row
-  double share = 0.0;                ///< of the cells that have some
+  double share = 0.0;                ///< share of the cells that have some
   /// Standard deviation of the target's tilt about the x and the y axis of the camera [rad].
   double tilt_x = 0.0, tilt_y = 0.0;
   double nearest_m = 0.0, farthest_m = 0.0;  ///< the middle of the target from the camera

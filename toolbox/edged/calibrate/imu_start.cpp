@@ -74,7 +74,7 @@ class GyroSum {
   std::vector<Vector3d> sum_;
 };
 
-/// Of the mean rates of camera and gyro; -1 where too few turns lie within the samples.
+/// Correlation of the mean rates of camera and gyro; -1 where too few turns lie within the samples.
 double correlation(const std::vector<CameraTurn>& turns, const GyroSum& gyro, double offset_s) {
   double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
   for (const CameraTurn& turn : turns) {

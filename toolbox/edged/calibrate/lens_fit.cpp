@@ -211,7 +211,7 @@ Trial best_start(const TargetViews& camera, const TargetLayout& layout, Distorti
   return *std::ranges::min_element(trials, {}, &Trial::cost);
 }
 
-/// Of the lens, with the poses of the views unknown as well: the Schur complement of the normal equations.
+/// Information on the lens, with the poses of the views unknown as well: the Schur complement of the normal equations.
 LensParameters sigmas_of(const Trial& trial, double sigma_px) {
   const int n = trial.lens.count();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
@@ -256,13 +256,6 @@ std::vector<std::size_t> usable_views(const TargetViews& camera) {
 }
 
 }  // namespace
-
-std::optional<SE3> target_pose(const FreeLens& lens, int width, int height, const TargetView& view,
-                               const TargetLayout& layout) {
-  const auto model = checked_model(lens, width, height);
-  if (!model || view.corners.size() < kFewestCorners) return std::nullopt;
-  return pose_with(lens, *model, pairs_of(view, layout), 0.3);
-}
 
 LensFit fit_lens(const TargetViews& camera, const TargetLayout& layout, DistortionModel distortion,
                  std::size_t most_views) {

@@ -13,18 +13,14 @@ namespace edged {
 struct LensFit {
   FreeLens lens;
   double sigma_px = 0.0;                  ///< robust deviation of a coordinate of a corner
-  LensParameters sigmas{};                ///< of the parameters; 0 for those that the model lacks
-  std::vector<std::optional<SE3>> T_C_T;  ///< of each view; nothing where it does not fit
+  LensParameters sigmas{};                ///< sigmas of the parameters; 0 for those that the model lacks
+  std::vector<std::optional<SE3>> T_C_T;  ///< pose of each view; nothing where it does not fit
 };
 
 struct TargetCamera {
   TargetViews views;
   LensFit lens;
 };
-
-/// The pose of the target in front of a known lens; nothing where too few corners fit.
-std::optional<SE3> target_pose(const FreeLens& lens, int width, int height, const TargetView& view,
-                               const TargetLayout& layout);
 
 /// Tries focal lengths and shapes of the lens on a few views, goes on with the best of them, frees one group of
 /// parameters after the other, and ends with all views, of which at most most_views evenly spread ones bear on the

@@ -59,19 +59,16 @@ TEST(LensFit, SaysWhatToRecord) {
 TEST(Reprojection, HasTheDerivativesOfItsResiduals) {
   const TargetLayout layout = layout_of(usual_target(TargetKind::AprilGrid));
   for (const FreeLens& lens : lenses_of_the_tests()) {
-    const TargetViews camera = views_through(lens, layout, 12, 1.0, 11);
-    std::optional<SE3> T_C_T;
-    std::size_t seen = 0;
-    for (; seen < camera.views.size() && !T_C_T; ++seen)
-      T_C_T = target_pose(lens, camera.width, camera.height, camera.views[seen], layout);
-    ASSERT_TRUE(T_C_T.has_value()) << to_string(lens.distortion);
-    const MovingReprojection cost(pairs_of(camera.views[seen - 1], layout), lens.distortion, 0.7,
+    std::vector<SE3> T_C_T;
+    const TargetViews camera = views_through(lens, layout, 12, 1.0, 11, &T_C_T);
+    ASSERT_FALSE(T_C_T.empty()) << to_string(lens.distortion);
+    const MovingReprojection cost(pairs_of(camera.views.front(), layout), lens.distortion, 0.7,
                                   {0.01, {0.3, -0.8, 0.5}, Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3).normalized()});
     // A camera near the one that saw the views.
     const SE3 T_B_C(so3::exp({0.2, -0.1, 0.4}), {0.05, 0.02, -0.03});
     const SE3 T_W_T(so3::exp({0.01, -0.02, 0.0}) * Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3).normalized(),
                     Eigen::Vector3d::Zero());
-    PoseBlock body = to_block(T_W_T * T_C_T->inverse() * T_B_C.inverse()), mount = to_block(T_B_C);
+    PoseBlock body = to_block(T_W_T * T_C_T.front().inverse() * T_B_C.inverse()), mount = to_block(T_B_C);
     MotionBlock motion{0.4, -0.3, 0.2, 0.01, 0.02, -0.01, 0.0, 0.0, 0.0};
     double clock = 0.004, tilt[] = {0.01, -0.02};
     LensParameters values = lens.values;

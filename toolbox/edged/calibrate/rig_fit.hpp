@@ -23,7 +23,7 @@ struct CornerResidual {
 struct CalibratedCamera {
   FreeLens lens;
   LensParameters lens_sigmas{};
-  double sigma_px = 0.0;                    ///< of a coordinate of a corner
+  double sigma_px = 0.0;                    ///< noise of a coordinate of a corner
   SE3 T_B_C;                                ///< without IMU: B is the first camera
   Vector6d pose_sigmas = Vector6d::Zero();  ///< position [m], rotation about the axes of C [rad]
   double time_offset_s = 0.0, time_offset_sigma_s = 0.0;
@@ -35,8 +35,8 @@ struct RigFit {
   std::vector<CalibratedCamera> cameras;
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero(), bias_accel = Eigen::Vector3d::Zero();  ///< mean
   std::size_t states = 0;
-  /// Of the inertial terms: root of the mean square of the residuals over their sigmas; 0.2 to 0.6 where the noise is
-  /// right, as most of it is taken up by the motion.
+  /// Residuals of the inertial terms: root of the mean square of the residuals over their sigmas; 0.2 to 0.6 where the
+  /// noise is right, as most of it is taken up by the motion.
   double imu_misfit = 0.0;
 };
 

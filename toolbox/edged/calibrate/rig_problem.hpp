@@ -30,7 +30,7 @@ struct RigState {
 struct CameraBlocks {
   PoseBlock T_B_C{};
   double time_offset_s = 0.0;  ///< at which the states lie
-  double correction_s = 0.0;   ///< of it
+  double correction_s = 0.0;   ///< correction of time_offset_s
   LensParameters lens{};
 };
 
@@ -50,7 +50,8 @@ class RigProblem {
   void solve(int most_steps);
   /// Moves what the corrections are relative to, so that they are zero.
   void take_corrections();
-  /// Of T_B_C (6), clock and lens (kLensParameters) of one camera after the other; rows of what is not estimated are 0.
+  /// Blocks of T_B_C (6), clock and lens (kLensParameters), one camera after the other; rows of what is not estimated
+  /// are 0.
   Eigen::MatrixXd calibration_covariance();
   double imu_misfit() const;
 

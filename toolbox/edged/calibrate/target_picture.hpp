@@ -44,7 +44,7 @@ class TargetPictures {
   std::deque<Timestamp> instants_;
   std::deque<Event> waiting_;  // not yet in the past of the next instant
   float range_ = 0.0F;         // steps from grey to black or white; 0: not yet known
-  /// Of a pixel, on one side of the instant: its brightness by the steps there, and the step next to the instant.
+  /// A pixel on one side of the instant: its brightness by the steps there, and the step next to the instant.
   struct Side {
     float sum = 0.0F;
     bool up = false, known = false;

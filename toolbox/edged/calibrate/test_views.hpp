@@ -31,9 +31,10 @@ inline std::vector<FreeLens> lenses_of_the_tests() {
           {DistortionModel::ExtendedUnified, {190, 190.5, 173, 132, 0.6, 1.1}}};
 }
 
-/// Hand-held views: the target anywhere in the image, tilted up to 45 degrees, nearer and farther.
+/// Hand-held views: the target anywhere in the image, tilted up to 45 degrees, nearer and farther. poses: gets T_C_T
+/// of each view.
 inline TargetViews views_through(const FreeLens& lens, const TargetLayout& layout, int count, double noise_px,
-                                 std::uint32_t seed) {
+                                 std::uint32_t seed, std::vector<SE3>* poses = nullptr) {
   std::mt19937 generator(seed);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(generator()) / 4294967296.0;
@@ -68,12 +69,14 @@ inline TargetViews views_through(const FreeLens& lens, const TargetLayout& layou
         view.corners.push_back({static_cast<int>(id), *pixel + Eigen::Vector2d(dx, dy)});
     }
     ++out.pictures;
-    if (view.corners.size() >= 12) out.views.push_back(std::move(view));
+    if (view.corners.size() < 12) continue;
+    out.views.push_back(std::move(view));
+    if (poses) poses->push_back(T_C_T);
   }
   return out;
 }
 
-/// Of two lenses, over directions within the image: how far apart their pixels are at most.
+/// How far apart the pixels of two lenses are at most, over directions within the image.
 inline double largest_difference_px(const FreeLens& a, const FreeLens& b) {
   double largest = 0.0;
   const CameraModel model = a.model(kTestWidth, kTestHeight);

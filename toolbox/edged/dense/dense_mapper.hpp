@@ -22,7 +22,7 @@ namespace edged {
 struct DenseImage {
   std::string camera;
   Modality modality = Modality::Frames;
-  CameraModel model;  ///< of the image
+  CameraModel model;  ///< model of the image
   SE3 T_B_C;
   cv::Mat image;  ///< CV_8UC1
 };
@@ -35,14 +35,14 @@ struct DenseInstant {
   SE3 T_O_B;
   Trajectory refined = {};                        ///< T_O_B of earlier keyframes that are marginalized now
   double scene_depth = 0.0;                       ///< [m]
-  std::vector<Eigen::Vector3d> landmarks_O = {};  ///< of keyframes
+  std::vector<Eigen::Vector3d> landmarks_O = {};  ///< landmarks of keyframes
   std::vector<DenseImage> images = {};
 };
 
-/// Of the cameras of one modality.
+/// Limits for the cameras of one modality.
 struct DenseModality {
   std::size_t views;      ///< a reference is compared with so many
-  double least_flow_cos;  ///< of the angle between the image motions of a view and of its reference
+  double least_flow_cos;  ///< cosine of the angle between the image motions of a view and of its reference
   EdgeConfig edges;
   SearchConfig search;
 };
@@ -67,10 +67,10 @@ struct DenseConfig {
   double least_baseline = 0.05, most_baseline = 0.5;
   double reference_spacing = 0.12;      ///< between references
   double reference_turn_rad = 0.2;      ///< or so much rotation
-  double most_turn_rad = 0.5;           ///< of a view against its reference
-  double most_wait_s = 2.0;             ///< of a reference for the views after it
-  double most_delay_s = 6.0;            ///< of an image for the refined poses of the keyframes around it
-  std::size_t kept_views = 40;          ///< of each modality
+  double most_turn_rad = 0.5;           ///< rotation of a view against its reference
+  double most_wait_s = 2.0;             ///< how long a reference waits for the views after it
+  double most_delay_s = 6.0;            ///< how long an image waits for the refined poses of the keyframes around it
+  std::size_t kept_views = 40;          ///< views of each modality
   std::size_t fused_keyframes = 4;      ///< the latest ones before a keyframe
   std::size_t most_points = 4'000'000;  ///< beyond that every second one is dropped
 };
@@ -79,7 +79,7 @@ struct DenseCounters {
   std::size_t keyframes = 0;   ///< with depth
   std::size_t unmeasured = 0;  ///< keyframes without parallax
   std::size_t edges = 0;       ///< edge pixels of the first
-  std::size_t with_depth = 0;  ///< of them, after culling, before fusion
+  std::size_t with_depth = 0;  ///< pixels with depth after culling, before fusion
 };
 
 /// Deterministic, single-threaded. Memory: some seconds of views, and 16 bytes a point up to a maximum.

@@ -27,13 +27,13 @@ struct DenseView {
   SE3 T_O_C;
   cv::Mat image;                                   ///< CV_8UC1
   cv::Mat smooth;                                  ///< smoothed(image)
-  Eigen::Vector2d flow = Eigen::Vector2d::Zero();  ///< of its middle since the view before [px]
+  Eigen::Vector2d flow = Eigen::Vector2d::Zero();  ///< motion of its middle since the view before [px]
 };
 
 struct DensePoint {
   std::uint16_t x = 0, y = 0;  ///< [px]
-  float inverse_depth = 0.0F;  ///< of z [1/m]
-  float sigma = 0.0F;          ///< of inverse_depth
+  float inverse_depth = 0.0F;  ///< 1 / z [1/m]
+  float sigma = 0.0F;          ///< sigma of inverse_depth
   std::uint8_t grey = 0;
   std::uint8_t views = 0;  ///< that agree, of all keyframes from which it was fused; 255: and more
 
@@ -48,7 +48,7 @@ struct DepthMap {
   CameraModel pinhole;
   SE3 T_O_C;
   std::size_t edges = 0;           ///< number of edge pixels of the image
-  std::vector<DensePoint> points;  ///< of them, in rows from the top
+  std::vector<DensePoint> points;  ///< pixels with depth, in rows from the top
 };
 
 struct CullConfig {

@@ -24,7 +24,7 @@ constexpr float kMargin_px = 3.0F * kMostMagnified + 1.0F;  // of a pixel in a v
 constexpr float kUnrelated = 1.0F;  // cost of a view that does not correlate, or does not show the place
 constexpr int kReach = 4;           // steps of a pixel from the expected place, at most
 
-/// Of mean zero and norm one.
+/// A patch of mean zero and norm one.
 using Samples = std::array<float, kSamples>;
 
 std::optional<Samples> normalized(Samples samples) {
@@ -72,7 +72,7 @@ Matrix3d matrix_of(const CameraModel& pinhole) {
 /// The patch around a pixel of the reference.
 struct ReferencePatch {
   Vector2f pixel;
-  float scale;  ///< of the pattern
+  float scale;  ///< scale of the pattern
   Samples samples;
 };
 
@@ -92,7 +92,7 @@ float vertex(float before, float here, float after) {
 /// What one search finds.
 struct Found {
   float w, sigma;
-  float px_per_w = 0.0F;  ///< of the view
+  float px_per_w = 0.0F;  ///< pixels of the view per inverse depth
 };
 
 /// The minimum of the mean cost of the first views over the range.
@@ -130,7 +130,7 @@ std::optional<Found> first_search(const ReferencePatch& reference, std::span<con
   return Found{low + step * (static_cast<float>(at) + vertex(best[-1], best[0], best[1])), step};
 }
 
-/// The same of one view near an estimate.
+/// The search in one view near an estimate.
 std::optional<Found> measure(const ReferencePatch& reference, const EpipolarView& view, const Found& expected,
                              const SearchConfig& config) {
   const auto place = view.place(reference.pixel, expected.w);

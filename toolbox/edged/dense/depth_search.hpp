@@ -14,7 +14,7 @@
 
 namespace edged {
 
-/// Of z [1/m].
+/// Inverse depths 1 / z [1/m].
 struct InverseDepthRange {
   double low, high;
 };
@@ -42,18 +42,19 @@ class EpipolarView {
 };
 
 struct SearchConfig {
-  double patch_scale = 1.0;         ///< of the patch, which has a radius of 2 px; at most 1.5
-  double step_px = 0.75;            ///< of the first search, in the widest of its views
+  double patch_scale = 1.0;         ///< scale of the patch, which has a radius of 2 px; at most 1.5
+  double step_px = 0.75;            ///< step of the first search, in the widest of its views
   int most_steps = 192;             ///< beyond that the steps grow
-  std::size_t first_views = 4;      ///< of the first search, those with the shortest baselines
+  std::size_t first_views = 4;      ///< views of the first search, those with the shortest baselines
   float most_first_cost = 0.4F;     ///< 1 - correlation, the mean of its views
-  float least_distinction = 0.05F;  ///< of the second-best minimum's cost over the best one's
-  float least_correlation = 0.7F;   ///< of a measurement
+  float least_distinction = 0.05F;  ///< ratio of the second-best minimum's cost to the best one's
+  float least_correlation = 0.7F;   ///< correlation of a measurement
   double gate_sigmas = 3.0;
-  double least_sigma_px = 0.15;  ///< of one measurement: errors of interpolation
-  double common_sigma_px = 0.2;  ///< of all measurements together: errors of poses, in the view of the longest baseline
-  double most_sigma = 0.04;      ///< of the estimate, over the inverse depth
-  int least_views = 3;           ///< that agree
+  double least_sigma_px = 0.15;  ///< error of one measurement: errors of interpolation
+  double common_sigma_px =
+      0.2;  ///< error of all measurements together: errors of poses, in the view of the longest baseline
+  double most_sigma = 0.04;  ///< sigma of the estimate over the inverse depth
+  int least_views = 3;       ///< that agree
 };
 
 struct InverseDepth {

@@ -11,10 +11,10 @@
 namespace edged {
 
 struct EdgeConfig {
-  double sigma_px = 0.7;        ///< of the Gaussian that smooths the image
-  float least_strength = 4.0F;  ///< of a frame its slope [grey levels per px]; of an event frame the height of the
+  double sigma_px = 0.7;        ///< width of the Gaussian that smooths the image
+  float least_strength = 4.0F;  ///< for a frame its slope [grey levels per px]; for an event frame the height of the
                                 ///< ridge over what is 2 px beside it [grey levels]
-  double most_share = 0.1;      ///< of all pixels; of more edges the strongest of each cell of the image
+  double most_share = 0.1;      ///< share of all pixels; of more edges the strongest of each cell of the image
   int border_px = 8;
 };
 

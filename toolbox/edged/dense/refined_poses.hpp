@@ -16,12 +16,12 @@ class RefinedPoses {
  public:
   /// A keyframe, as it was estimated at its time.
   void add_keyframe(const StampedPose& T_O_B);
-  /// The same keyframe when it is marginalized.
+  /// A keyframe that was added, when it is marginalized.
   void refine(const StampedPose& T_O_B);
 
   /// The newest refined keyframe.
   std::optional<Timestamp> known_until() const;
-  /// Of a causal pose; beyond the refined keyframes with the correction of the nearest one.
+  /// The refined pose for a causal one; beyond the refined keyframes with the correction of the nearest one.
   SE3 operator()(const StampedPose& T_O_B) const;
 
  private:

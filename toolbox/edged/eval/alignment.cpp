@@ -14,7 +14,7 @@ namespace {
 struct Moments {
   Eigen::Vector3d mean_truth = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_estimate = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of truth (rows) and estimate (columns)
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< between truth (rows) and estimate (columns)
   double variance_estimate = 0.0;
 };
 

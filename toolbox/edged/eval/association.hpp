@@ -22,7 +22,7 @@ struct Association {
   std::vector<PosePair> pairs;  ///< in time order
   std::size_t outside = 0;      ///< estimates before the first or after the last true pose
   std::size_t in_gaps = 0;      ///< poses of the sparser where the neighbours in the denser are too far apart
-  Timestamp estimate_begin{};   ///< of the first estimated pose
+  Timestamp estimate_begin{};   ///< stamp of the first estimated pose
 };
 
 /// No interpolation between true poses further apart than this [s].

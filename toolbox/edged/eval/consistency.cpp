@@ -50,9 +50,9 @@ struct Anchor {
     const Eigen::Vector3d swing = Eigen::Vector3d::UnitZ().cross(v);
     return yaw * swing * swing.transpose();
   }
-  /// The same of a position.
+  /// Its part in the covariance of a position.
   Eigen::Matrix3d of_position(const Eigen::Vector3d& p) const { return position + of_vector(p - truth.translation()); }
-  /// The same of a rotation of B.
+  /// Its part in the covariance of a rotation of B.
   Eigen::Matrix3d of_rotation(const SE3& T_W_B) const {
     const Eigen::Vector3d up_B = T_W_B.R().row(2);
     return yaw * up_B * up_B.transpose();

@@ -52,7 +52,7 @@ struct Consistency {
   /// Time spans of silent divergence: for more than 0.5 s all poses are Good, but position or rotation are beyond the
   /// 99.73 %.
   std::vector<TimeSpan> silent;
-  std::vector<PoseErrorSample> errors;  ///< of each pose
+  std::vector<PoseErrorSample> errors;  ///< errors of each pose
 
   double silent_s() const;
 };

@@ -31,7 +31,7 @@ double yaw_error_deg(const SE3& truth, const SE3& estimate) {
   return kDegreesPerRadian * std::abs(std::atan2(R(1, 0), R(0, 0)));
 }
 
-/// Of up in the sensor's frame.
+/// Angle between the directions of up in the sensor's frame.
 double tilt_error_deg(const PosePair& pair) {
   return kDegreesPerRadian * angle_between(pair.truth.R().row(2), pair.estimate.R().row(2));
 }
@@ -56,7 +56,8 @@ double start_scale(const std::vector<PosePair>& pairs) {
                                                                   : sim3_scale(start);
 }
 
-/// Of straight motion, too, as a moment's is: there Sim(3) is not fixed. NaN where too little moved.
+/// The true over the estimated extent. Defined for straight motion, too, where Sim(3) is not. NaN with too little
+/// motion.
 double extent_ratio(const std::vector<PosePair>& pairs) {
   if (path_length(pairs, &PosePair::truth) < kLeastStartPath_m) return std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<double>(pairs.size());

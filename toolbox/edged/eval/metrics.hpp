@@ -14,7 +14,8 @@
 
 namespace edged {
 
-/// Of one error over all pairs. std is that of the population; the median of an even number is the middle two's mean.
+/// Statistics of one error over all pairs. std is that of the population; the median of an even number is the middle
+/// two's mean.
 struct Statistics {
   std::size_t count = 0;
   double rmse = 0, mean = 0, median = 0, std = 0, min = 0, max = 0, sse = 0;
@@ -65,16 +66,16 @@ struct Evaluation {
   Protocol protocol;
   std::size_t pairs = 0, outside = 0, in_gaps = 0;
   double duration_s = 0.0;     ///< first to last pair; NaN without times
-  double path_length_m = 0.0;  ///< of the true poses at the pairs
+  double path_length_m = 0.0;  ///< along the true poses at the pairs
   Similarity alignment;        ///< what was applied to the estimate
   double scale = 1.0;  ///< Sim(3) scale over all pairs, whatever the protocol: 1 is perfect, truth = scale * estimate
-  double start_scale = 1.0;         ///< the same over the first 5 s of the estimate; NaN with too little motion
+  double start_scale = 1.0;         ///< Sim(3) scale over the first 5 s of the estimate; NaN with too little motion
   double first_scale = 1.0;         ///< extent of the truth over that of the estimate in its first 2 s; NaN as above
-  double later_scale = 1.0;         ///< the same ten seconds later
+  double later_scale = 1.0;         ///< that extent ratio ten seconds later
   Statistics ate_m;                 ///< position error
   Statistics rotation_deg;          ///< angle between true and aligned rotation
   Statistics yaw_deg;               ///< size of its part about the world's z
-  Statistics tilt_deg;              ///< of up before alignment, which hides it; the truth must be level
+  Statistics tilt_deg;              ///< angle of up before alignment, which hides it; the truth must be level
   double mpe_percent = 0.0;         ///< mean position error / path length
   double rotation_deg_per_m = 0.0;  ///< mean rotation error / path length
   double yaw_deg_per_m = 0.0;       ///< mean yaw error / path length

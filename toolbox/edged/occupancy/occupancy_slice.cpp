@@ -22,7 +22,7 @@ int voxels_along(const octomap::OcTree& tree, const Leaf& leaf) {
   return 1 << (tree.getTreeDepth() - leaf.getDepth());
 }
 
-/// Those that reach into the heights, the free ones first.
+/// Cells that reach into the heights, the free ones first.
 std::vector<Square> squares_between(const octomap::OcTree& tree, const HeightRange& heights) {
   std::vector<Square> squares;
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {

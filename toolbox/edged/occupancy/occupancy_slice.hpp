@@ -21,7 +21,7 @@ struct HeightRange {
 struct OccupancySlice {
   static constexpr int kOccupied = 100, kFree = 0, kUnknown = -1;
   cv::Mat cells;             ///< CV_8SC1; columns along x, rows along y, from the lowest on
-  Eigen::Vector2d corner_W;  ///< of the first cell, with the least x and y [m]
+  Eigen::Vector2d corner_W;  ///< corner of the first cell, with the least x and y [m]
 };
 
 /// A cell is occupied if a voxel there is, else free if one is. Nothing where nothing is known between the heights.

@@ -23,7 +23,7 @@ namespace edged {
 struct OccupancyMap {
   octomap::OcTree tree;
   HeightRange path;  ///< heights of the body at the keyframes
-  Timestamp t;       ///< of the newest keyframe
+  Timestamp t;       ///< stamp of the newest keyframe
   /// Keyframes that are missing: too many waited, or the tree was full.
   std::size_t left_out = 0;
 };
@@ -41,7 +41,8 @@ class OccupancyWorker {
   OccupancyWorker(const OccupancyWorker&) = delete;
   OccupancyWorker& operator=(const OccupancyWorker&) = delete;
 
-  /// Of a step. Never blocks: keyframes beyond the capacity are left out, and so are those of a tree that is full.
+  /// Takes the keyframes of a step. Never blocks: keyframes beyond the capacity are left out, and so are those of a
+  /// tree that is full.
   void add(const std::vector<KeyframeRecord>& marginalized);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace edged {
 
-/// Of an AprilGrid, else of a charuco.
+/// The family of an AprilGrid, else that of a charuco.
 inline cv::Ptr<cv::aruco::Dictionary> tag_family(bool april) {
   return cv::aruco::getPredefinedDictionary(april ? cv::aruco::DICT_APRILTAG_36h11 : cv::aruco::DICT_6X6_250);
 }

@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::pair<TargetKind, std::string_view> kKinds[] = {
-    {TargetKind::Checkerboard, "checkerboard"}, {TargetKind::AprilGrid, "aprilgrid"}, {TargetKind::Charuco, "charuco"}};
 constexpr int kMostLines = 40;
 
 TargetPatch patch(double x, double y, double width, double height) {
@@ -96,11 +94,57 @@ TargetLayout charuco(const TargetSpec& spec) {
   return out;
 }
 
-void check_tags(int count, int most, std::string_view kind) {
-  if (count > most)
-    throw InputError::format("a target '{}' with {} tags: its family has {}; take fewer rows or columns", kind, count,
-                             most);
+void check_ratio(const TargetSpec& spec, const char* meaning) {
+  if (!(spec.ratio > 0.0 && spec.ratio < 1.0))
+    throw InputError::format("a target '{}' with ratio {:g}: must lie between 0 and 1 ({})", to_string(spec.kind),
+                             spec.ratio, meaning);
 }
+
+void check_tags(const TargetSpec& spec, int count) {
+  const int most = tag_family(spec.kind == TargetKind::AprilGrid)->bytesList.rows;
+  if (count > most)
+    throw InputError::format("a target '{}' with {} tags: its family has {}; take fewer rows or columns",
+                             to_string(spec.kind), count, most);
+}
+
+void check_checkerboard(const TargetSpec& spec) {
+  if (spec.rows < 3 || spec.columns < 3) throw InputError("a checkerboard needs at least 3 x 3 inner corners");
+  if ((spec.rows + spec.columns) % 2 == 0)
+    throw InputError::format(
+        "a checkerboard of {} x {} inner corners looks the same when it is turned by 180 degrees; one of rows and "
+        "columns must be odd, the other even",
+        spec.rows, spec.columns);
+}
+
+/// Eight corners make a view, here and below.
+void check_april_grid(const TargetSpec& spec) {
+  check_ratio(spec, "gap over tag");
+  if (spec.rows * spec.columns < 2) throw InputError("a target 'aprilgrid' needs at least two tags");
+  check_tags(spec, spec.rows * spec.columns);
+}
+
+void check_charuco(const TargetSpec& spec) {
+  check_ratio(spec, "marker over square");
+  if (spec.rows < 3 || spec.columns < 3 || (spec.rows - 1) * (spec.columns - 1) < 8)
+    throw InputError("a target 'charuco' needs at least 3 x 5 or 4 x 4 squares");
+  check_tags(spec, spec.rows * spec.columns / 2);
+}
+
+struct KindRow {
+  TargetKind kind;
+  std::string_view name;
+  int rows, columns;  ///< the usual target: these, size_m and ratio
+  double size_m, ratio;
+  TargetLayout (*layout)(const TargetSpec& spec);
+  void (*check)(const TargetSpec& spec);
+};
+
+constexpr KindRow kKinds[] = {
+    {TargetKind::Checkerboard, "checkerboard", 6, 9, 0.03, 0.0, checkerboard, check_checkerboard},
+    {TargetKind::AprilGrid, "aprilgrid", 6, 6, 0.05, 0.3, april_grid, check_april_grid},
+    {TargetKind::Charuco, "charuco", 6, 8, 0.04, 0.75, charuco, check_charuco}};
+
+const KindRow& row_of(TargetKind kind) { return *std::ranges::find(kKinds, kind, &KindRow::kind); }
 
 /// The share of [low, high] in the pixel from x to x + 1.
 double share(double low, double high, int x) {
@@ -110,33 +154,21 @@ double share(double low, double high, int x) {
 }  // namespace
 
 std::optional<TargetKind> parse_target_kind(std::string_view text) {
-  for (const auto& [kind, name] : kKinds)
-    if (name == text) return kind;
-  return std::nullopt;
+  const auto* const row = std::ranges::find(kKinds, text, &KindRow::name);
+  return row == std::end(kKinds) ? std::nullopt : std::optional(row->kind);
 }
 
-std::string_view to_string(TargetKind kind) {
-  return std::ranges::find(kKinds, kind, &std::pair<TargetKind, std::string_view>::first)->second;
-}
+std::string_view to_string(TargetKind kind) { return row_of(kind).name; }
 
 TargetSpec usual_target(TargetKind kind) {
-  switch (kind) {
-    case TargetKind::Checkerboard:
-      return {.kind = kind, .rows = 6, .columns = 9, .size_m = 0.03, .ratio = 0.0};
-    case TargetKind::Charuco:
-      return {.kind = kind, .rows = 6, .columns = 8, .size_m = 0.04, .ratio = 0.75};
-    case TargetKind::AprilGrid:
-      break;
-  }
-  return {};
+  const KindRow& row = row_of(kind);
+  return {kind, row.rows, row.columns, row.size_m, row.ratio};
 }
 
 void TargetSpec::visit(ConfigFields& fields) {
-  fields.choice("kind", kind,
-                {{"checkerboard", TargetKind::Checkerboard},
-                 {"aprilgrid", TargetKind::AprilGrid},
-                 {"charuco", TargetKind::Charuco}},
-                {.effect = "of the target"});
+  std::vector<std::pair<std::string_view, TargetKind>> kinds;
+  for (const KindRow& row : kKinds) kinds.emplace_back(row.name, row.kind);
+  fields.choice("kind", kind, kinds, {.effect = "of the target"});
   fields.add("rows", rows, {"", 1, kMostLines, "of tags, of inner corners of a checkerboard, of squares of a charuco"});
   fields.add("columns", columns, {"", 1, kMostLines, "likewise"});
   fields.add("size_m", size_m, {"m", 1e-4, 10, "side of a tag or of a square"});
@@ -150,26 +182,7 @@ void TargetSpec::validate() const {
                              kMostLines);
   if (!(size_m > 0.0 && size_m <= 10.0))
     throw InputError::format("a target '{}' of size {:g} mm: must be above 0 and at most 10000", name, 1e3 * size_m);
-  if (kind == TargetKind::Checkerboard) {
-    if (rows < 3 || columns < 3) throw InputError("a checkerboard needs at least 3 x 3 inner corners");
-    if ((rows + columns) % 2 == 0)
-      throw InputError::format(
-          "a checkerboard of {} x {} inner corners looks the same when it is turned by 180 degrees; one of rows and "
-          "columns must be odd, the other even",
-          rows, columns);
-    return;
-  }
-  if (!(ratio > 0.0 && ratio < 1.0))
-    throw InputError::format("a target '{}' with ratio {:g}: must lie between 0 and 1 ({})", name, ratio,
-                             kind == TargetKind::AprilGrid ? "gap over tag" : "marker over square");
-  const int most = tag_family(kind == TargetKind::AprilGrid)->bytesList.rows;
-  // Eight corners make a view.
-  if (kind == TargetKind::AprilGrid && rows * columns < 2)
-    throw InputError("a target 'aprilgrid' needs at least two tags");
-  if (kind == TargetKind::AprilGrid) return check_tags(rows * columns, most, name);
-  if (rows < 3 || columns < 3 || (rows - 1) * (columns - 1) < 8)
-    throw InputError("a target 'charuco' needs at least 3 x 5 or 4 x 4 squares");
-  check_tags(rows * columns / 2, most, name);
+  row_of(kind).check(*this);
 }
 
 std::string describe(const TargetSpec& spec) {
@@ -189,15 +202,7 @@ std::string describe(const TargetSpec& spec) {
 
 TargetLayout layout_of(const TargetSpec& spec) {
   spec.validate();
-  switch (spec.kind) {
-    case TargetKind::Checkerboard:
-      return checkerboard(spec);
-    case TargetKind::Charuco:
-      return charuco(spec);
-    case TargetKind::AprilGrid:
-      break;
-  }
-  return april_grid(spec);
+  return row_of(spec.kind).layout(spec);
 }
 
 cv::Mat draw_target(const TargetLayout& layout, double px_per_m) {

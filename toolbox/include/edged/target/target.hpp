@@ -62,7 +62,7 @@ struct TargetLayout {
   std::vector<Eigen::Vector2d> corners;  ///< by their number
   std::vector<TargetPatch> dark;         ///< the rest is white
   std::vector<TargetTag> tags;           ///< none of a checkerboard
-  double margin = 0.0;                   ///< of white paper that is needed around it
+  double margin = 0.0;                   ///< width of the white paper that is needed around it
 };
 
 /// Throws InputError as TargetSpec::validate.
