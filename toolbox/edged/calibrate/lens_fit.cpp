@@ -13,9 +13,9 @@
 #include <opencv2/calib3d.hpp>
 #include <span>
 
-#include "edged/calibrate/lens_start.hpp"
 #include "edged/calibrate/reprojection.hpp"
 #include "edged/calibrate/solve_silently.hpp"
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/estimator/factors/blocks.hpp"
@@ -195,6 +195,38 @@ bool improve(Trial& trial, Free free, const TargetViews& camera, double sigma_px
   return true;
 }
 
+/// Coefficients to start from, where nothing is known of a lens; a model with distortion starts without.
+std::vector<LensCoefficients> shapes(DistortionModel distortion) {
+  switch (distortion) {
+    case DistortionModel::FieldOfView:
+      return {{0.3}, {0.9}};
+    case DistortionModel::Omni:
+      return {{0.1}, {1.0}};
+    case DistortionModel::DoubleSphere:
+      return {{0.0, 0.3}, {0.0, 0.6}};
+    case DistortionModel::ExtendedUnified:
+      return {{0.3, 1.0}, {0.6, 1.0}};
+    default:
+      return {{}};
+  }
+}
+
+/// Focal lengths from a quarter to three times the width, each with shapes that the model may have.
+std::vector<FreeLens> lenses_to_try(DistortionModel distortion, int width, int height) {
+  std::vector<FreeLens> out;
+  const LensModel& model = lens_model(distortion);
+  for (const LensCoefficients& k : shapes(distortion)) {
+    const double slope = model.radius_of_angle != nullptr ? model.radius_of_angle(k, 0.0).slope : 1.0;
+    for (double share = 0.25; share < 3.0; share *= 1.35) {
+      const double focal = share * width / slope;
+      FreeLens lens{distortion, {focal, focal, 0.5 * (width - 1), 0.5 * (height - 1)}};
+      std::ranges::copy(k, lens.values.begin() + 4);
+      out.push_back(lens);
+    }
+  }
+  return out;
+}
+
 /// The first that fits best, from focal lengths and shapes that are tried.
 Trial best_start(const TargetViews& camera, const TargetLayout& layout, DistortionModel distortion,
                  std::span<const std::size_t> indices) {
@@ -233,13 +265,6 @@ LensParameters sigmas_of(const Trial& trial, double sigma_px) {
   const Eigen::MatrixXd covariance =
       scale.asDiagonal() * (scale.asDiagonal() * information * scale.asDiagonal()).inverse() * scale.asDiagonal();
   for (int i = 0; i < n; ++i) out.at(static_cast<std::size_t>(i)) = std::sqrt(std::max(0.0, covariance(i, i)));
-  return out;
-}
-
-std::vector<std::size_t> evenly(const std::vector<std::size_t>& from, std::size_t most) {
-  std::vector<std::size_t> out;
-  const std::size_t n = std::min(most, from.size());
-  for (std::size_t i = 0; i < n; ++i) out.push_back(from[i * from.size() / n]);
   return out;
 }
 

@@ -60,9 +60,7 @@ std::vector<RigState> states_at(const std::vector<PlacedView>& views, std::span<
     }
     all.back().views.emplace_back(view.camera, view.index);
   }
-  std::vector<RigState> out;
-  const std::size_t n = std::min(most, all.size());
-  for (std::size_t i = 0; i < n; ++i) out.push_back(all[i * all.size() / n]);
+  std::vector<RigState> out = evenly(all, most);
   for (RigState& state : out) state.gyro_B = gyro_at(imu, state.t);
   return out;
 }

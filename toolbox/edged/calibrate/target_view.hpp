@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -54,5 +55,14 @@ using PixelByLens = Eigen::Matrix<double, 2, kLensParameters>;
 /// The derivatives may be null.
 std::optional<Eigen::Vector2d> project_free(const FreeLens& lens, const Eigen::Vector3d& p_C, PixelByPoint* by_point,
                                             PixelByLens* by_lens);
+
+/// At most so many of them, evenly spread.
+template <typename T>
+std::vector<T> evenly(const std::vector<T>& from, std::size_t most) {
+  std::vector<T> out;
+  const std::size_t n = std::min(most, from.size());
+  for (std::size_t i = 0; i < n; ++i) out.push_back(from[i * from.size() / n]);
+  return out;
+}
 
 }  // namespace edged

@@ -112,4 +112,12 @@ Similarity align_rigidly(const std::vector<PosePair>& pairs) {
   return umeyama(moments(pairs), false).alignment;
 }
 
+double mean_squared_error(const std::vector<PosePair>& pairs, const Similarity& alignment) {
+  double sum = 0.0;
+  for (const PosePair& pair : pairs) {
+    sum += (pair.truth.translation() - alignment * pair.estimate.translation()).squaredNorm();
+  }
+  return sum / static_cast<double>(pairs.size());
+}
+
 }  // namespace edged

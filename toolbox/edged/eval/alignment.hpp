@@ -51,4 +51,7 @@ Similarity align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 /// least one pair.
 Similarity align_rigidly(const std::vector<PosePair>& pairs);
 
+/// Mean squared error of the aligned positions, over all pairs [m^2].
+double mean_squared_error(const std::vector<PosePair>& pairs, const Similarity& alignment);
+
 }  // namespace edged

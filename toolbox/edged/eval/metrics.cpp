@@ -74,14 +74,6 @@ double extent_ratio(const std::vector<PosePair>& pairs) {
   return std::sqrt(true_extent / extent);
 }
 
-double mean_squared_error(const std::vector<PosePair>& pairs, const Similarity& alignment) {
-  double sum = 0.0;
-  for (const PosePair& pair : pairs) {
-    sum += (pair.truth.translation() - alignment * pair.estimate.translation()).squaredNorm();
-  }
-  return sum / static_cast<double>(pairs.size());
-}
-
 }  // namespace
 
 Statistics statistics(std::vector<double> errors) {

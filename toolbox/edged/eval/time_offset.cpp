@@ -28,11 +28,7 @@ class Errors {
   double operator()(double offset_s) const {
     const std::vector<PosePair> pairs = pairs_at(offset_s);
     if (pairs.size() < std::max<std::size_t>(3, fewest_)) return std::numeric_limits<double>::infinity();
-    const Similarity alignment = align_rigidly(pairs);
-    double sum = 0.0;
-    for (const PosePair& pair : pairs)
-      sum += (pair.truth.translation() - alignment * pair.estimate.translation()).squaredNorm();
-    return std::sqrt(sum / static_cast<double>(pairs.size()));
+    return std::sqrt(mean_squared_error(pairs, align_rigidly(pairs)));
   }
 
  private:

@@ -81,6 +81,28 @@ std::uint64_t noise_seed(const SimulatorConfig& config) {
   return static_cast<std::uint64_t>(config.seed) + (config.mount.suffix.empty() ? 0 : 0x9e3779b97f4a7c15U);
 }
 
+/// What lens models have beside the focal lengths and the centre.
+struct Coefficient {
+  std::string_view name;
+  double SimulatedCameraConfig::*value;
+  FieldDoc doc;
+};
+
+using Camera = SimulatedCameraConfig;
+constexpr Coefficient kCoefficients[] = {
+    {"k1", &Camera::k1, {"", -10, 10, "radial distortion"}},
+    {"k2", &Camera::k2, {"", -10, 10, "radial distortion"}},
+    {"p1", &Camera::p1, {"", -1, 1, "tangential distortion"}},
+    {"p2", &Camera::p2, {"", -1, 1, "tangential distortion"}},
+    {"k3", &Camera::k3, {"", -10, 10, "radial distortion"}},
+    {"k4", &Camera::k4, {"", -10, 10, "radial distortion"}},
+    {"k5", &Camera::k5, {"", -10, 10, "radial distortion"}},
+    {"k6", &Camera::k6, {"", -10, 10, "radial distortion"}},
+    {"xi", &Camera::xi, {"", -1, 10, "of ds and omni: distance from the centre of the sphere"}},
+    {"alpha", &Camera::alpha, {"", 0, 1, "of ds and eucm: weight of the sphere against the plane"}},
+    {"beta", &Camera::beta, {"", 0.01, 100, "of eucm: shape of the ellipsoid"}},
+    {"w", &Camera::w, {"rad", 0, 3.1, "of fov: angle of view of an ideal lens of that kind"}}};
+
 }  // namespace
 
 void SimulatedCameraConfig::visit(ConfigFields& fields) {
@@ -95,18 +117,7 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
     if (lens.most > 0) lenses.emplace_back(lens.name, lens.model);
   fields.choice("distortion", distortion, lenses,
                 {.effect = "the model of the lens: it takes the coefficients below that it has"});
-  fields.add("k1", k1, {"", -10, 10, "radial distortion"});
-  fields.add("k2", k2, {"", -10, 10, "radial distortion"});
-  fields.add("p1", p1, {"", -1, 1, "tangential distortion"});
-  fields.add("p2", p2, {"", -1, 1, "tangential distortion"});
-  fields.add("k3", k3, {"", -10, 10, "radial distortion"});
-  fields.add("k4", k4, {"", -10, 10, "radial distortion"});
-  fields.add("k5", k5, {"", -10, 10, "radial distortion"});
-  fields.add("k6", k6, {"", -10, 10, "radial distortion"});
-  fields.add("xi", xi, {"", -1, 10, "of ds and omni: distance from the centre of the sphere"});
-  fields.add("alpha", alpha, {"", 0, 1, "of ds and eucm: weight of the sphere against the plane"});
-  fields.add("beta", beta, {"", 0.01, 100, "of eucm: shape of the ellipsoid"});
-  fields.add("w", w, {"rad", 0, 3.1, "of fov: angle of view of an ideal lens of that kind"});
+  for (const Coefficient& k : kCoefficients) fields.add(k.name, this->*k.value, k.doc);
   fields.add("residual_px", residual_px,
              {"px", 0, 5, "rms of a smooth error of the lens that its calibration does not have"});
   fields.add("flare", flare,
@@ -116,12 +127,9 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
 }
 
 double SimulatedCameraConfig::coefficient(std::string_view name) const {
-  const std::pair<std::string_view, double> named[] = {{"k1", k1}, {"k2", k2},       {"p1", p1},     {"p2", p2},
-                                                       {"k3", k3}, {"k4", k4},       {"k5", k5},     {"k6", k6},
-                                                       {"xi", xi}, {"alpha", alpha}, {"beta", beta}, {"w", w}};
-  const auto* const found = std::ranges::find(named, name, &std::pair<std::string_view, double>::first);
-  EDGED_CHECK(found != std::end(named), "the simulator has no coefficient {}", name);
-  return found->second;
+  const auto* const found = std::ranges::find(kCoefficients, name, &Coefficient::name);
+  EDGED_CHECK(found != std::end(kCoefficients), "the simulator has no coefficient {}", name);
+  return this->*found->value;
 }
 
 CameraModel SimulatedCameraConfig::model() const {

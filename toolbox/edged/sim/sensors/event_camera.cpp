@@ -102,12 +102,8 @@ void EventCamera::step_pixel(std::size_t pixel, float before, const Interval& in
     reference_[pixel] += step;
     const double share =
         after == before ? 1.0 : std::clamp((reference_[pixel] - before) / (after - before), 0.0F, 1.0F);
-    const std::int64_t t_ns =
-        interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
     // In its refractory time, a pixel adopts the new level without an event.
-    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
-    last_ns_[pixel] = t_ns;
-    events.push_back(make_event(pixel, t_ns, positive));
+    fire(pixel, interval.at(share), positive, events);
   }
 }
 
@@ -116,13 +112,9 @@ void EventCamera::add_shot_noise(const Interval& interval, std::vector<Event>& e
       config_.shot_hz * static_cast<double>(interval.length_ns) * 1e-9 * static_cast<double>(level_.size());
   for (int count = random_.arrivals(expected); count > 0; --count) {
     const std::size_t pixel = static_cast<std::size_t>(random_.index(static_cast<int>(level_.size())));
-    const std::int64_t t_ns =
-        interval.begin_ns + static_cast<std::int64_t>(random_.uniform() * static_cast<double>(interval.length_ns));
+    const std::int64_t t_ns = interval.at(random_.uniform());
     const bool positive = random_.uniform() < 0.5;
-    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
-    last_ns_[pixel] = t_ns;
-    reference_[pixel] = level_[pixel];
-    events.push_back(make_event(pixel, t_ns, positive));
+    if (fire(pixel, t_ns, positive, events)) reference_[pixel] = level_[pixel];
   }
 }
 
@@ -130,10 +122,7 @@ void EventCamera::add_hot_pixels(const Interval& interval, std::vector<Event>& e
   for (const HotPixel& hot : hot_) {
     for (int count = hot_random_.arrivals(hot.hz * static_cast<double>(interval.length_ns) * 1e-9); count > 0;
          --count) {
-      const double share = hot_random_.uniform();
-      const std::int64_t t_ns =
-          interval.begin_ns + static_cast<std::int64_t>(share * static_cast<double>(interval.length_ns));
-      events.push_back(make_event(hot.pixel, t_ns, true));
+      events.push_back(make_event(hot.pixel, interval.at(hot_random_.uniform()), true));
     }
   }
 }
@@ -145,13 +134,17 @@ void EventCamera::add_storm(const Interval& interval, double hz, std::vector<Eve
   const int count = storm_random_.arrivals(drawn_hz * length_ns * 1e-9 * static_cast<double>(level_.size()));
   for (int k = 0; k < count; ++k) {
     const std::size_t pixel = static_cast<std::size_t>(storm_random_.index(static_cast<int>(level_.size())));
-    const std::int64_t t_ns =
-        interval.begin_ns + static_cast<std::int64_t>((k + storm_random_.uniform()) / count * length_ns);
+    const std::int64_t t_ns = interval.at((k + storm_random_.uniform()) / count);
     const bool positive = storm_random_.uniform() < 0.5;
-    if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) continue;
-    last_ns_[pixel] = t_ns;
-    events.push_back(make_event(pixel, t_ns, positive));
+    fire(pixel, t_ns, positive, events);
   }
+}
+
+bool EventCamera::fire(std::size_t pixel, std::int64_t t_ns, bool positive, std::vector<Event>& events) {
+  if (static_cast<double>(t_ns - last_ns_[pixel]) < config_.refractory_us * 1e3) return false;
+  last_ns_[pixel] = t_ns;
+  events.push_back(make_event(pixel, t_ns, positive));
+  return true;
 }
 
 Event EventCamera::make_event(std::size_t pixel, std::int64_t t_ns, bool positive) const {

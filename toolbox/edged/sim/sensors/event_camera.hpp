@@ -40,7 +40,12 @@ class EventCamera {
  private:
   struct Interval {
     std::int64_t begin_ns, length_ns;
+    std::int64_t at(double share) const {
+      return begin_ns + static_cast<std::int64_t>(share * static_cast<double>(length_ns));
+    }
   };
+  /// False in the refractory time of the pixel, without an event.
+  bool fire(std::size_t pixel, std::int64_t t_ns, bool positive, std::vector<Event>& events);
   void step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events);
   void add_shot_noise(const Interval& interval, std::vector<Event>& events);
   void add_storm(const Interval& interval, double hz, std::vector<Event>& events);
