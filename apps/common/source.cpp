@@ -17,7 +17,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/aedat/aedat.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/geometry.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/evenly.hpp"
-#include "edged/io/ros/bag/mcap_writer.hpp"
+#include "edged/io/ros/bag/mcap.hpp"
 #include "edged/odometry.hpp"
 #include "run/foxglove.hpp"
 #include "run/run_album.hpp"

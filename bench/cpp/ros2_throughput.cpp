@@ -15,9 +15,9 @@
 #include <thread>
 
 #include "dds/subscription.hpp"
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/ros/messages/event_packets.hpp"
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::ros2 {
 namespace {
@@ -83,7 +83,7 @@ int send(int seconds, double mevents_per_s) {
 int receive(int seconds, bool decode, int sender) {
   const Participant participant(bench_discovery());
   std::atomic<std::uint64_t> packets = 0, events = 0;
-  EventPacketDecoder decoder;
+  EventMessageDecoder decoder;
   Subscription subscription(participant, {kTopic,
                                           {.reliable = false, .depth = 1000},
                                           [](const std::string&) { return true; },

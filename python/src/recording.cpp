@@ -12,7 +12,7 @@
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/core/measurements/recording_piece.hpp"
-#include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/aedat/aedat.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/run_cameras.hpp"
 #include "edged/io/open_recording.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::ros2 {
 namespace {

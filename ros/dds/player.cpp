@@ -9,9 +9,9 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 #include "edged/live/live_clock.hpp"
 
 namespace edged::ros2 {

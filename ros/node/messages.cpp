@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::node {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edged/autopilot/vehicle_odometry.hpp"
-#include "edged/io/ros/bag/message_source.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 #include "edged/occupancy/occupancy_slice.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"

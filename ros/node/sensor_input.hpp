@@ -11,7 +11,7 @@
 #include <string>
 
 #include "edged/io/core/topic_choice.hpp"
-#include "edged/io/ros/messages/sensor_messages.hpp"
+#include "edged/io/ros/messages/event_packets.hpp"
 #include "edged/measurement.hpp"
 #include "node/transport.hpp"
 

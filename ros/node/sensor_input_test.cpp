@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 #include "edged/io/ros/messages/definitions.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "edged/io/core/topic_choice.hpp"
-#include "edged/io/ros/bag/message_source.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 #include "edged/time.hpp"
 
 namespace edged::node {

@@ -10,8 +10,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/ros/bag/bag_format.hpp"
-#include "edged/io/ros/bag/mcap_format.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edged;

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::array<Read, 8> kReaders = {
       [](const WireReader& m) { read_event_array(m); },
       [](const WireReader& m) {
-        EventPacketDecoder decoder;
+        EventMessageDecoder decoder;
         const EventPacket packet = read_event_packet(m);
         decoder.decode(packet);
         decoder.decode(packet);  // as the one that follows
@@ -21,8 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       [](const WireReader& m) { read_camera_info(m); },
       [](const WireReader& m) { read_image(m); },
       [](const WireReader& m) { read_compressed_image(m); },
-      [](const WireReader& m) { read_pose_stamped(m); },
-      [](const WireReader& m) { read_named_pose(m); },
+      [](const WireReader& m) { read_pose("geometry_msgs/PoseStamped", m); },
+      [](const WireReader& m) { read_pose("nav_msgs/Odometry", m); },
   };
   if (size == 0) return 0;
   try {

@@ -18,7 +18,7 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/live/live_clock.hpp"
 #include "fast_peer.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/bytes.hpp"
-#include "edged/io/ros/bag/bag_folder.hpp"
+#include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/external_text.hpp"
 #include "edged/io/text/imu_text.hpp"

@@ -25,8 +25,8 @@ struct Record {
   std::uint32_t address, time_us;
 
   bool of_dvs() const { return address >> 31U == 0; }
-  bool external() const { return (address >> 10U & 1U) != 0; }  ///< of a DVS record: the trigger input
-  /// Of the others: 0 reset level of a pixel, 1 its signal level, 3 the IMU.
+  bool external() const { return (address >> 10U & 1U) != 0; }  ///< true for the trigger input, in a DVS record
+  /// Kind of the other records: 0 reset level of a pixel, 1 its signal level, 3 the IMU.
   unsigned kind() const { return address >> 10U & 3U; }
   unsigned x() const { return address >> 12U & 0x3FFU; }
   unsigned y() const { return address >> 22U & 0x1FFU; }
@@ -97,7 +97,7 @@ class ApsFrame {
   std::vector<bool> seen_;
   cv::Mat image_;
   std::size_t signals_ = 0;
-  std::array<double, 2> sum_ns_{};  ///< of the stamps of reset and signal levels, relative to the first stamp
+  std::array<double, 2> sum_ns_{};  ///< sums of the stamps of reset and signal levels, relative to the first stamp
   std::optional<Timestamp> first_;
 };
 
@@ -113,9 +113,9 @@ class Aedat2File final : public StreamedDataset {
  private:
   /// Determined from the first records.
   OneOfEach streams_there() {
-    constexpr std::size_t kTried = std::size_t{1} << 18U;
+    constexpr std::size_t kFirstRecords = std::size_t{1} << 18U;
     OneOfEach streams;
-    for (const Record& record : records_in(file_.read(header_.bytes, kTried * kRecordBytes))) {
+    for (const Record& record : records_in(file_.read(header_.bytes, kFirstRecords * kRecordBytes))) {
       streams.events = streams.events || record.of_dvs();
       streams.frames = streams.frames || (!record.of_dvs() && record.kind() < 2);
       streams.imu = streams.imu || (!record.of_dvs() && record.kind() == 3);

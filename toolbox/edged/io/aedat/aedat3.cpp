@@ -56,9 +56,9 @@ class Aedat3File final : public StreamedDataset {
  private:
   /// Determined from the first packet headers. The first source with events is read.
   OneOfEach streams_there(std::uint64_t at) try {
-    constexpr int kTried = 1000;
+    constexpr int kFirstHeads = 1000;
     OneOfEach streams;
-    for (int i = 0; i < kTried && at < file_.size(); ++i) {
+    for (int i = 0; i < kFirstHeads && at < file_.size(); ++i) {
       const Aedat3Packet head = packet_head(file_.read(at, kPacketHead));
       at += kPacketHead + head.body_bytes();
       if (!source_ && head.kind == kPolarity) source_ = head.source;

@@ -18,7 +18,7 @@
 namespace edged {
 namespace {
 
-/// From microseconds. Throws Damage for a stamp out of range.
+/// A stamp in microseconds. Throws Damage for a stamp out of range.
 Timestamp stamp_of_us(std::int64_t us) {
   if (us < 0 || us > kMaxStampNs / 1000) throw Damage("a stamp out of range");
   return timestamp_from_ns(us * 1000);
@@ -26,14 +26,16 @@ Timestamp stamp_of_us(std::int64_t us) {
 
 /// The middle of the exposure if its begin and end are given, else the stamp of the frame.
 Timestamp frame_stamp(const FlatTable& frame) {
-  const auto begin = frame.number<std::int64_t>(3), end = frame.number<std::int64_t>(4);
-  return stamp_of_us(begin > 0 && end >= begin ? begin + (end - begin) / 2 : frame.number<std::int64_t>(0));
+  const auto begin = frame.number<std::int64_t>(aedat4::kExposureBegin),
+             end = frame.number<std::int64_t>(aedat4::kExposureEnd);
+  return stamp_of_us(begin > 0 && end >= begin ? begin + (end - begin) / 2
+                                               : frame.number<std::int64_t>(aedat4::kStamp));
 }
 
 cv::Mat grey_image(const FlatTable& frame) {
-  const int width = frame.number<std::int16_t>(6), height = frame.number<std::int16_t>(7);
-  const int type = frame.number<std::int8_t>(5);  // OpenCV's own numbers
-  const ByteSpan pixels = frame.bytes(10);
+  const int width = frame.number<std::int16_t>(aedat4::kWidth), height = frame.number<std::int16_t>(aedat4::kHeight);
+  const int type = frame.number<std::int8_t>(aedat4::kType);  // OpenCV's own numbers
+  const ByteSpan pixels = frame.bytes(aedat4::kPixels);
   if (width <= 0 || height <= 0 || (type != CV_8UC1 && type != CV_8UC3 && type != CV_8UC4) ||
       pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * CV_ELEM_SIZE(type))
     throw Damage("an image of an invalid size or type");
@@ -47,14 +49,6 @@ cv::Mat grey_image(const FlatTable& frame) {
 
 }  // namespace
 
-ByteSpan flat_buffer(const Bytes& bytes, std::string_view type) {
-  ByteReader reader(bytes);
-  const auto length = reader.number<std::uint32_t>();
-  const ByteSpan buffer = reader.take(length);
-  if (flat_identifier(buffer) != type) throw Damage("is not of the type of its stream");
-  return buffer;
-}
-
 void Aedat4Dataset::choose(const std::vector<Aedat4Stream>& streams, const Rig* rig, const RecordingOptions& options) {
   const std::vector<Topic> topics = topics_of(streams);
   choice_ = choose_topics(topics, wishes_of(rig, options), name_);
@@ -67,8 +61,8 @@ void Aedat4Dataset::choose(const std::vector<Aedat4Stream>& streams, const Rig* 
     const bool several = std::ranges::count(cameras_, camera.modality, &RecordedCamera::modality) > 1;
     info_.streams[stream].role = several ? camera.name : kind_name(camera.modality);
     if (camera.modality != Modality::Events) continue;
-    const auto said = options.geometry ? options.geometry : streams[stream].geometry;
-    camera.sensor = event_sensor_size(name_, said, rig, camera.name);
+    const auto stated = options.geometry ? options.geometry : streams[stream].geometry;
+    camera.sensor = event_sensor_size(name_, stated, rig, camera.name);
     if (choice_.camera_of(stream)->camera == 0) set_sensor(camera.sensor);
   }
 }
@@ -98,7 +92,7 @@ void Aedat4Dataset::take_packet(std::size_t stream, std::string_view compression
 
 void Aedat4Dataset::take_events(std::size_t camera, ByteSpan buffer) {
   constexpr std::size_t kEventBytes = 16;
-  const FlatVector list = FlatTable(buffer).vector(0, kEventBytes);
+  const FlatVector list = FlatTable(buffer).vector(aedat4::kItems, kEventBytes);
   std::vector<Event> events;
   events.reserve(list.count);
   for (ByteReader reader(buffer.subspan(list.at, list.count * kEventBytes)); reader.left() > 0;) {
@@ -119,7 +113,7 @@ void Aedat4Dataset::take_frame(std::size_t camera, ByteSpan buffer) {
 
 void Aedat4Dataset::take_imu(ByteSpan buffer) {
   const FlatTable packet(buffer);
-  const FlatVector list = packet.vector(0, 4);
+  const FlatVector list = packet.vector(aedat4::kItems, 4);
   for (std::size_t i = 0; i < list.count; ++i) {
     const FlatTable sample = packet.table(list, i);
     const auto three = [&sample](unsigned first) {
@@ -128,7 +122,8 @@ void Aedat4Dataset::take_imu(ByteSpan buffer) {
       if (!v.allFinite()) throw Damage("an IMU sample that is not finite");
       return v;
     };
-    push_imu({stamp_of_us(sample.number<std::int64_t>(0)), three(5) * kDegree, three(2) * kStandardGravity});
+    push_imu({stamp_of_us(sample.number<std::int64_t>(aedat4::kImuStamp)), three(aedat4::kGyro) * kDegree,
+              three(aedat4::kAccel) * kStandardGravity});
   }
 }
 

@@ -8,9 +8,7 @@
 
 namespace edged {
 
-/// The buffer after its length. Throws Damage if it is not of this type.
-ByteSpan flat_buffer(const Bytes& bytes, std::string_view type);
-
+/// The streams of a file or server: which are read, and their packets as measurements.
 class Aedat4Dataset : public StreamedDataset {
  protected:
   using StreamedDataset::StreamedDataset;

@@ -14,21 +14,6 @@
 namespace edged {
 namespace {
 
-std::string_view aedat4_compression(std::int32_t number) {
-  switch (number) {
-    case 0:
-      return "none";
-    case 1:
-    case 2:
-      return "lz4";
-    case 3:
-    case 4:
-      return "zstd";
-    default:
-      throw Damage("unknown compression");
-  }
-}
-
 const tinyxml2::XMLElement* child_named(const tinyxml2::XMLElement* parent, const char* kind, const char* name,
                                         const char* attribute) {
   for (const auto* e = parent ? parent->FirstChildElement(kind) : nullptr; e; e = e->NextSiblingElement(kind))
@@ -58,14 +43,23 @@ std::vector<Aedat4Stream> parse_streams(const tinyxml2::XMLElement* dv) {
 
 Aedat4Header parse_aedat4_header(ByteSpan buffer) {
   const FlatTable table(buffer);
-  const std::string_view xml = as_text(table.bytes(2));
+  const std::string_view xml = as_text(table.bytes(aedat4::kXml));
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) throw Damage("its xml cannot be read");
   const tinyxml2::XMLElement* dv = document.FirstChildElement("dv");
-  Aedat4Header header{aedat4_compression(table.number<std::int32_t>(0)), table.number<std::int64_t>(1, -1),
+  const auto number = static_cast<std::uint32_t>(table.number<std::int32_t>(aedat4::kCompression));
+  if (number >= kAedat4Compressions.size()) throw Damage("unknown compression");
+  Aedat4Header header{kAedat4Compressions[number].method, table.number<std::int64_t>(aedat4::kTableAt, -1),
                       parse_streams(dv)};
   if (const std::string frame = attribute_text(dv, kAedat4PoseFrame); !frame.empty()) header.pose_frame = frame;
   return header;
+}
+
+Aedat4PacketHead parse_packet_head(ByteSpan head, const std::vector<Aedat4Stream>& streams) {
+  Aedat4PacketHead packet{number_at<std::int32_t>(head, 0), number_at<std::int32_t>(head, 4), std::nullopt};
+  const auto known = std::ranges::find(streams, packet.number, &Aedat4Stream::number);
+  if (known != streams.end() && packet.bytes > 0) packet.stream = static_cast<std::size_t>(known - streams.begin());
+  return packet;
 }
 
 std::vector<Topic> topics_of(const std::vector<Aedat4Stream>& streams) {
@@ -76,14 +70,14 @@ std::vector<Topic> topics_of(const std::vector<Aedat4Stream>& streams) {
     topic.type = s.type;
     topic.count = 1;
   }
-  const auto tell_apart = [&](const auto& addition) {
+  const auto distinguish = [&](const auto& addition) {
     std::vector<std::string> names;
     for (const Topic& topic : topics) names.push_back(topic.name);
     for (std::size_t i = 0; i < topics.size(); ++i)
       if (std::ranges::count(names, names[i]) > 1) topics[i].name += addition(streams[i]);
   };
-  tell_apart([](const Aedat4Stream& s) { return "@" + s.source; });
-  tell_apart([](const Aedat4Stream& s) { return fmt::format("#{}", s.number); });
+  distinguish([](const Aedat4Stream& s) { return "@" + s.source; });
+  distinguish([](const Aedat4Stream& s) { return fmt::format("#{}", s.number); });
   return topics;
 }
 

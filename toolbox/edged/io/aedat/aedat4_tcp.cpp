@@ -1,27 +1,90 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A connection sends the header of a file without the version line, then packets as in a file.
-#include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/aedat/aedat.hpp"
 
+#include <netdb.h>
 #include <poll.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <memory>
+#include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/aedat/flat_table.hpp"
-#include "edged/io/aedat/tcp_connection.hpp"
 #include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace {
 
-constexpr std::size_t kLiveHeadBytes = 8;  // of a packet
 constexpr std::size_t kMostHeaderBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMostLiveBytes = std::size_t{1} << 26U;  // in a packet: a frame of 20 megapixels in colour
 constexpr int kPollMs = 100;
+
+/// A TCP connection that only receives.
+class TcpConnection {
+ public:
+  /// Throws InputError if no server accepts the connection.
+  TcpConnection(const std::string& host, const std::string& port) : name_(host + ":" + port) {
+    addrinfo wanted{};
+    wanted.ai_socktype = SOCK_STREAM;
+    addrinfo* list = nullptr;
+    if (const int error = getaddrinfo(host.c_str(), port.c_str(), &wanted, &list); error != 0)
+      throw InputError::format("tcp://{}: {}: give tcp://HOST:PORT", name_, gai_strerror(error));
+    const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(list, &freeaddrinfo);
+    int reason = 0;
+    for (const addrinfo* a = list; a && socket_ < 0; a = a->ai_next) {
+      socket_ = ::socket(a->ai_family, a->ai_socktype | SOCK_CLOEXEC, a->ai_protocol);
+      if (socket_ >= 0 && ::connect(socket_, a->ai_addr, a->ai_addrlen) == 0) return;
+      reason = errno;
+      if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+    }
+    throw InputError::format("tcp://{}: {}: is the server running, with its TCP output on this port?", name_,
+                             std::strerror(reason));
+  }
+  ~TcpConnection() {
+    if (socket_ >= 0) ::close(socket_);
+  }
+  TcpConnection(TcpConnection&& other) noexcept
+      : name_(std::move(other.name_)),
+        socket_(std::exchange(other.socket_, -1)),
+        open_(other.open_),
+        received_(std::move(other.received_)) {}
+  TcpConnection& operator=(TcpConnection&&) = delete;
+
+  const std::string& name() const { return name_; }  ///< "HOST:PORT", for messages
+  int descriptor() const { return socket_; }         ///< for poll()
+
+  /// Appends the bytes that have arrived, about 64 kB at most, to received(). Closes this end after the server has
+  /// closed the connection.
+  void receive() {
+    constexpr std::size_t kStep = 1 << 16;
+    const std::size_t before = received_.size();
+    received_.resize(before + kStep);
+    const ssize_t got = ::recv(socket_, received_.data() + before, kStep, MSG_DONTWAIT);
+    received_.resize(before + (got > 0 ? static_cast<std::size_t>(got) : 0));
+    // A server that crashes resets the connection, which counts as its end.
+    if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) open_ = false;
+  }
+  const Bytes& received() const { return received_; }
+  /// Removes the first bytes of received().
+  void drop(std::size_t count) {
+    received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  bool open() const { return open_; }
+
+ private:
+  std::string name_;
+  int socket_ = -1;
+  bool open_ = true;
+  Bytes received_;
+};
 
 /// Waits a moment for any of the open connections and receives what has arrived.
 void receive_some(std::vector<TcpConnection*> connections) {
@@ -37,9 +100,9 @@ void receive_some(std::vector<TcpConnection*> connections) {
 std::optional<Aedat4Header> take_header(TcpConnection& connection) {
   if (as_text(connection.received()).starts_with(kAedat4Magic)) connection.drop(kAedat4Magic.size());
   const ByteSpan received = connection.received();
-  if (received.size() < 4 + kLiveHeadBytes || kAedat4Magic.starts_with(as_text(received))) return std::nullopt;
+  if (received.size() < 4 + kPacketHeadBytes || kAedat4Magic.starts_with(as_text(received))) return std::nullopt;
   const auto bytes = number_at<std::uint32_t>(received, 0);
-  if (bytes < kLiveHeadBytes || bytes > kMostHeaderBytes) throw Damage("its length is invalid");
+  if (bytes < kPacketHeadBytes || bytes > kMostHeaderBytes) throw Damage("its length is invalid");
   if (flat_identifier(received.subspan(4)) != "IOHE") throw Damage("is of another type");
   if (received.size() < 4 + bytes) return std::nullopt;
   Aedat4Header header = parse_aedat4_header(received.subspan(4, bytes));
@@ -114,17 +177,15 @@ class Aedat4Live final : public Aedat4Dataset {
   bool take_whole_packets(LiveStream& stream) {
     const ByteSpan received = stream.connection.received();
     std::size_t at = 0;
-    while (received.size() - at >= kLiveHeadBytes) {
-      const auto number = number_at<std::int32_t>(received, at), bytes = number_at<std::int32_t>(received, at + 4);
-      const std::vector<Aedat4Stream>& known = stream.header.streams;
-      const auto found = std::ranges::find(known, number, &Aedat4Stream::number);
-      if (found == known.end() || bytes <= 0 || static_cast<std::size_t>(bytes) > kMostLiveBytes)
+    while (received.size() - at >= kPacketHeadBytes) {
+      const Aedat4PacketHead packet = parse_packet_head(received.subspan(at), stream.header.streams);
+      const std::size_t body = at + kPacketHeadBytes, size = static_cast<std::size_t>(packet.bytes);
+      if (!packet.stream || size > kMostLiveBytes)
         throw InputError::format(
             "tcp://{}: a packet of stream {} with {} bytes is invalid: the stream is damaged; start again",
-            stream.connection.name(), number, bytes);
-      const std::size_t body = at + kLiveHeadBytes, size = static_cast<std::size_t>(bytes);
+            stream.connection.name(), packet.number, packet.bytes);
       if (received.size() - body < size) break;
-      const std::size_t place = stream.first + static_cast<std::size_t>(found - known.begin());
+      const std::size_t place = stream.first + *packet.stream;
       if (reads(place))
         take_packet(place, stream.header.compression, received.subspan(body, size),
                     fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection.name()));

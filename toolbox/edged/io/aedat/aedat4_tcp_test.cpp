@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // AEDAT4 over TCP, from a server in this process that behaves like one of DV.
-#include "edged/io/aedat/aedat4_tcp.hpp"
+#include "edged/io/aedat/aedat.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -12,6 +12,7 @@
 #include <atomic>
 #include <thread>
 
+#include "edged/io/aedat/aedat4_header.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/evt_test_support.hpp"
@@ -23,6 +24,9 @@ namespace {
 using ::testing::HasSubstr;
 
 const cv::Size kLiveSensor(346, 260);
+
+/// The header without the version line, as servers send it.
+std::string network_header(const Aedat4Encoder& encoder) { return encoder.header().substr(kAedat4Magic.size()); }
 
 /// Sends bytes to the first client, in pieces, and closes the connection.
 class Server {
@@ -75,7 +79,7 @@ class Server {
 struct LiveTalk {
   explicit LiveTalk(std::ptrdiff_t packet_events) {
     Aedat4Encoder encoder(Aedat4Encoder::Compression::Lz4, kLiveSensor);
-    text = encoder.network_header();
+    text = network_header(encoder);
     for (auto at = events.begin(); at != events.end();) {
       const auto end = at + std::min(packet_events, events.end() - at);
       const ImuSample sample{at->t, {1, 2, 3}, {0, 0, 9.8}};
@@ -121,12 +125,12 @@ TEST(Aedat4Tcp, StreamsOfSeveralPortsAreMerged) {
     for (const std::string& type : others) header.replace(header.find(">" + type) + 1, 4, "TRIG");
     return header;
   };
-  std::string imu = only(encoder.network_header(), {"EVTS", "FRME"});
+  std::string imu = only(network_header(encoder), {"EVTS", "FRME"});
   for (std::size_t i = 0; i < talk.events.size(); i += 100) {
     const ImuSample sample{talk.events[i].t, {1, 2, 3}, {0, 0, 9.8}};
     imu += encoder.imu({&sample, 1});
   }
-  std::string events = only(encoder.network_header(), {"FRME", "IMUS"});
+  std::string events = only(network_header(encoder), {"FRME", "IMUS"});
   for (std::size_t i = 0; i < talk.events.size(); i += 500) events += encoder.events({&talk.events[i], 500});
   const Server first(events, 1000), second(imu, 1000);
   const Recording recording = open_recording(first.address() + "," + second.port());

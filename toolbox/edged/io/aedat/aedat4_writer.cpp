@@ -4,9 +4,7 @@
 #include "edged/io/aedat/aedat4_writer.hpp"
 
 #include <flatbuffers/flatbuffers.h>
-#include <lz4frame.h>
 #include <spdlog/fmt/fmt.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <map>
@@ -14,7 +12,9 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat.hpp"
 #include "edged/io/aedat/aedat4_header.hpp"
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/core/camera_names.hpp"
 
 namespace edged {
@@ -30,6 +30,14 @@ std::int64_t to_us(Timestamp t) { return to_ns(t) / 1000; }
 std::string finished(FlatBufferBuilder& b, flatbuffers::uoffset_t start, const char* type) {
   b.FinishSizePrefixed(flatbuffers::Offset<void>(b.EndTable(start)), type);
   return {reinterpret_cast<const char*>(b.GetBufferPointer()), b.GetSize()};
+}
+
+/// A table with the list as its only field.
+template <typename List>
+std::string finished_list(FlatBufferBuilder& b, List list, const char* type) {
+  const auto start = b.StartTable();
+  b.AddOffset(slot(aedat4::kItems), list);
+  return finished(b, start, type);
 }
 
 std::string stream_xml(int number, const char* compression, const std::string& output, const char* type,
@@ -65,8 +73,7 @@ int Aedat4Encoder::stream_of(Modality modality, std::size_t camera) const {
 }
 
 std::string Aedat4Encoder::header_xml() const {
-  constexpr const char* kNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
-  const char* const name = kNames[static_cast<std::size_t>(compression_)];
+  const char* const name = kAedat4Compressions[static_cast<std::size_t>(compression_)].name;
   std::map<int, std::string> streams = {{2, stream_xml(2, name, "imu", "IMUS", "")}};
   const auto add = [&](Modality modality, const char* type, std::size_t camera, cv::Size size) {
     const int number = stream_of(modality, camera);
@@ -87,13 +94,12 @@ std::string Aedat4Encoder::header(std::int64_t table_at) const {
   FlatBufferBuilder b;
   const auto xml = b.CreateString(header_xml());
   const auto start = b.StartTable();
-  b.AddElement<std::int32_t>(slot(0), static_cast<std::int32_t>(compression_), 0);
-  b.AddElement<std::int64_t>(slot(1), table_at, 0);  // no default value, so that the length of the header is constant
-  b.AddOffset(slot(2), xml);
+  b.AddElement<std::int32_t>(slot(aedat4::kCompression), static_cast<std::int32_t>(compression_), 0);
+  b.AddElement<std::int64_t>(slot(aedat4::kTableAt), table_at,
+                             0);  // no default value, so that the length of the header is constant
+  b.AddOffset(slot(aedat4::kXml), xml);
   return std::string(kAedat4Magic) + finished(b, start, "IOHE");
 }
-
-std::string Aedat4Encoder::network_header() const { return header().substr(kAedat4Magic.size()); }
 
 std::string Aedat4Encoder::events(std::span<const Event> events, std::size_t camera) {
   struct alignas(8) WireEvent {
@@ -107,12 +113,10 @@ std::string Aedat4Encoder::events(std::span<const Event> events, std::size_t cam
     wire.push_back({to_us(e.t), static_cast<std::int16_t>(e.x), static_cast<std::int16_t>(e.y), e.positive, {}});
   FlatBufferBuilder b;
   const auto list = b.CreateVectorOfStructs(wire);
-  const auto start = b.StartTable();
-  b.AddOffset(slot(0), list);
   const int stream = stream_of(Modality::Events, camera);
   return packet(
       {0, stream, 0, static_cast<std::int64_t>(events.size()), to_us(events.front().t), to_us(events.back().t)},
-      finished(b, start, "EVTS"));
+      finished_list(b, list, "EVTS"));
 }
 
 std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure, std::size_t camera) {
@@ -121,13 +125,13 @@ std::string Aedat4Encoder::frame(const Frame& frame, Duration exposure, std::siz
   const auto pixels = b.CreateVector(image.data, image.total() * image.elemSize());
   const auto start = b.StartTable();
   const std::int64_t begin_us = to_us(frame.t - exposure / 2), end_us = to_us(frame.t + exposure / 2);
-  // Stamps: of the frame, of its begin and end, of the begin and end of the exposure.
-  for (const unsigned field : {0U, 1U, 3U}) b.AddElement<std::int64_t>(slot(field), begin_us, 0);
-  for (const unsigned field : {2U, 4U}) b.AddElement<std::int64_t>(slot(field), end_us, 0);
-  b.AddElement<std::int8_t>(slot(5), static_cast<std::int8_t>(image.type()), 0);
-  b.AddElement<std::int16_t>(slot(6), static_cast<std::int16_t>(image.cols), 0);
-  b.AddElement<std::int16_t>(slot(7), static_cast<std::int16_t>(image.rows), 0);
-  b.AddOffset(slot(10), pixels);
+  for (const unsigned field : {aedat4::kStamp, aedat4::kBegin, aedat4::kExposureBegin})
+    b.AddElement<std::int64_t>(slot(field), begin_us, 0);
+  for (const unsigned field : {aedat4::kEnd, aedat4::kExposureEnd}) b.AddElement<std::int64_t>(slot(field), end_us, 0);
+  b.AddElement<std::int8_t>(slot(aedat4::kType), static_cast<std::int8_t>(image.type()), 0);
+  b.AddElement<std::int16_t>(slot(aedat4::kWidth), static_cast<std::int16_t>(image.cols), 0);
+  b.AddElement<std::int16_t>(slot(aedat4::kHeight), static_cast<std::int16_t>(image.rows), 0);
+  b.AddOffset(slot(aedat4::kPixels), pixels);
   return packet({0, stream_of(Modality::Frames, camera), 0, 1, begin_us, end_us}, finished(b, start, "FRME"));
 }
 
@@ -136,18 +140,15 @@ std::string Aedat4Encoder::imu(std::span<const ImuSample> samples) {
   std::vector<flatbuffers::Offset<void>> tables;
   for (const ImuSample& s : samples) {
     const auto start = b.StartTable();
-    b.AddElement<std::int64_t>(slot(0), to_us(s.t), 0);
+    b.AddElement<std::int64_t>(slot(aedat4::kImuStamp), to_us(s.t), 0);
     for (unsigned i = 0; i < 3; ++i) {
-      b.AddElement<float>(slot(2 + i), static_cast<float>(s.accel_B[i] / kStandardGravity), 0);
-      b.AddElement<float>(slot(5 + i), static_cast<float>(s.gyro_B[i] * 180 / std::numbers::pi), 0);
+      b.AddElement<float>(slot(aedat4::kAccel + i), static_cast<float>(s.accel_B[i] / kStandardGravity), 0);
+      b.AddElement<float>(slot(aedat4::kGyro + i), static_cast<float>(s.gyro_B[i] * 180 / std::numbers::pi), 0);
     }
     tables.emplace_back(b.EndTable(start));
   }
-  const auto list = b.CreateVector(tables);
-  const auto start = b.StartTable();
-  b.AddOffset(slot(0), list);
   return packet({0, 2, 0, static_cast<std::int64_t>(samples.size()), to_us(samples.front().t), to_us(samples.back().t)},
-                finished(b, start, "IMUS"));
+                finished_list(b, b.CreateVector(tables), "IMUS"));
 }
 
 std::string Aedat4Encoder::table() const {
@@ -159,36 +160,18 @@ std::string Aedat4Encoder::table() const {
   for (const PacketEntry& p : packets_) {
     const WirePacket info{p.stream, p.bytes};
     const auto start = b.StartTable();
-    b.AddElement<std::int64_t>(slot(0), p.at, 0);
-    b.AddStruct(slot(1), &info);
-    b.AddElement<std::int64_t>(slot(2), p.count, 0);
-    b.AddElement<std::int64_t>(slot(3), p.first_us, 0);
-    b.AddElement<std::int64_t>(slot(4), p.last_us, 0);
+    b.AddElement<std::int64_t>(slot(aedat4::kBodyAt), p.at, 0);
+    b.AddStruct(slot(aedat4::kStreamAndBytes), &info);
+    b.AddElement<std::int64_t>(slot(aedat4::kCount), p.count, 0);
+    b.AddElement<std::int64_t>(slot(aedat4::kFirstStamp), p.first_us, 0);
+    b.AddElement<std::int64_t>(slot(aedat4::kLastStamp), p.last_us, 0);
     tables.emplace_back(b.EndTable(start));
   }
-  const auto list = b.CreateVector(tables);
-  const auto start = b.StartTable();
-  b.AddOffset(slot(0), list);
-  return packed(finished(b, start, "FTAB"));
+  return packed(finished_list(b, b.CreateVector(tables), "FTAB"));
 }
 
 std::string Aedat4Encoder::packed(const std::string& body) const {
-  std::string out = body;
-  std::size_t bytes = body.size();
-  if (compression_ == Compression::Lz4 || compression_ == Compression::Lz4High) {
-    LZ4F_preferences_t preferences{};
-    preferences.compressionLevel = compression_ == Compression::Lz4High ? 9 : 0;
-    out.resize(LZ4F_compressFrameBound(body.size(), &preferences));
-    bytes = LZ4F_compressFrame(out.data(), out.size(), body.data(), body.size(), &preferences);
-    EDGED_CHECK(!LZ4F_isError(bytes), "LZ4: {}", LZ4F_getErrorName(bytes));
-  } else if (compression_ == Compression::Zstd || compression_ == Compression::ZstdHigh) {
-    out.resize(ZSTD_compressBound(body.size()));
-    bytes =
-        ZSTD_compress(out.data(), out.size(), body.data(), body.size(), compression_ == Compression::ZstdHigh ? 9 : 1);
-    EDGED_CHECK(!ZSTD_isError(bytes), "zstd: {}", ZSTD_getErrorName(bytes));
-  }
-  out.resize(bytes);
-  return out;
+  return compress(kAedat4Compressions[static_cast<std::size_t>(compression_)].method, body);
 }
 
 std::string Aedat4Encoder::packet(PacketEntry entry, const std::string& body) {
@@ -274,7 +257,7 @@ class Aedat4Writer final : public RecordingWriter {
   std::string name_;
   Aedat4Encoder encoder_;
   OutputFile file_;
-  std::vector<std::vector<Event>> events_;  ///< of each camera, not yet written
+  std::vector<std::vector<Event>> events_;  ///< not yet written, for each camera
   std::vector<ImuSample> imu_;
 };
 

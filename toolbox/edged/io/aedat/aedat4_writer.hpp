@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes AEDAT4: packets as bytes, and a file with its table.
+// Encodes the parts of AEDAT4 files and streams.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "edged/io/core/recording_writer.hpp"
+#include <opencv2/core/types.hpp>
+
+#include "edged/dataset.hpp"
 
 namespace edged {
 
@@ -29,8 +30,6 @@ class Aedat4Encoder {
 
   /// Version line and header. Their length does not depend on the offset of the table (-1: no table).
   std::string header(std::int64_t table_at = -1) const;
-  /// The header without the version line, as servers send it.
-  std::string network_header() const;
   std::string events(std::span<const Event> events, std::size_t camera = 0);
   /// The stamp is the middle of the exposure. The image may have any type.
   std::string frame(const Frame& frame, Duration exposure = Duration(0), std::size_t camera = 0);
@@ -41,7 +40,7 @@ class Aedat4Encoder {
 
  private:
   struct PacketEntry {
-    std::int64_t at;  ///< of the body
+    std::int64_t at;  ///< offset of the body
     std::int32_t stream, bytes;
     std::int64_t count, first_us, last_us;
   };
@@ -52,14 +51,11 @@ class Aedat4Encoder {
   std::string packet(PacketEntry entry, const std::string& body);
 
   Compression compression_;
-  std::vector<cv::Size> sensors_;  ///< of the event cameras
+  std::vector<cv::Size> sensors_;  ///< sizes of the event cameras
   std::size_t frame_cameras_ = 1;
   std::string pose_frame_;
   std::vector<PacketEntry> packets_;
   std::int64_t packets_bytes_ = 0;
 };
-
-/// A file with LZ4 and a table. Stamps are whole microseconds and not negative.
-std::unique_ptr<RecordingWriter> write_aedat4(const WriterSetup& setup);
 
 }  // namespace edged

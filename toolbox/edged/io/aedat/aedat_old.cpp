@@ -9,6 +9,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
+#include "edged/io/aedat/aedat.hpp"
 #include "edged/io/core/geometry.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 

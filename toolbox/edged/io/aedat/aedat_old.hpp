@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// AEDAT 2.0 files of jAER and AEDAT 3.1 files of cAER: events, frames and IMU of DAVIS cameras.
+// The header of AEDAT 2.0 files of jAER and AEDAT 3.1 files of cAER, and their readers.
 #pragma once
 
 #include <optional>
@@ -10,19 +10,12 @@
 
 namespace edged {
 
-/// head: the first bytes of a file. True for all versions before 4.
-bool is_old_aedat(ByteSpan head);
-
-/// Cameras "events" and "frames"; stamps are those of the camera. Options used: the geometry of the event sensor.
-/// Throws InputError for other versions and cameras.
-Recording open_old_aedat(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
-
 /// The content of the header lines, which begin with `#`.
 struct OldAedatHeader {
   std::uint64_t bytes = 0;
   std::string version;             ///< "2.0"
   std::string chip;                ///< "DAVIS240C"; "" if unknown
-  std::optional<cv::Size> sensor;  ///< of that chip [px]
+  std::optional<cv::Size> sensor;  ///< size of that chip [px]
   double gyro_lsb_per_dps = 32.8;  ///< +-1000 deg/s, as of the MPU-6150 of these cameras
   double accel_lsb_per_g = 4096;   ///< +-8 g
 };

@@ -73,15 +73,23 @@ class FlatTable {
   }
 
   ByteSpan buffer_;
-  std::size_t at_;            ///< of the table
-  std::size_t layout_;        ///< of the list of the offsets of its fields
-  std::size_t layout_bytes_;  ///< of that list
+  std::size_t at_;            ///< offset of the table
+  std::size_t layout_;        ///< offset of the list of the offsets of its fields
+  std::size_t layout_bytes_;  ///< length of that list
 };
 
 /// The type of a buffer: the four characters after the offset of the root table.
 inline std::string_view flat_identifier(ByteSpan buffer) {
   if (buffer.size() < 8) throw Damage("ends too early");
   return as_text(buffer.subspan(4, 4));
+}
+
+/// A buffer after its length. Throws Damage if it is not of this type.
+inline ByteSpan flat_buffer(ByteSpan bytes, std::string_view type) {
+  ByteReader reader(bytes);
+  const ByteSpan buffer = reader.take(reader.number<std::uint32_t>());
+  if (flat_identifier(buffer) != type) throw Damage("is not of the type of its stream");
+  return buffer;
 }
 
 }  // namespace edged

@@ -11,6 +11,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/hdf5/h5_filters.hpp"
+#include "edged/io/hdf5/hdf5.hpp"
 
 namespace edged {
 namespace {
@@ -132,9 +133,9 @@ void H5Array::check_chunk(const std::vector<hsize_t>& offset) const {
   std::uint32_t skipped = 0;  // mask of filters that were not applied
   if (!filtered_) {
     // This searches all chunks, which is too slow for very many.
-    constexpr std::uint64_t kMostLookedThrough = 20'000;
+    constexpr std::uint64_t kMostChunksSearched = 20'000;
     haddr_t address = 0;
-    if (rows() / chunk_shape_.front() > kMostLookedThrough) return;
+    if (rows() / chunk_shape_.front() > kMostChunksSearched) return;
     if (H5Dget_chunk_info_by_coord(data_.get(), offset.data(), &skipped, &address, &bytes) < 0) throw too_short();
     if (address != HADDR_UNDEF && bytes < chunk_bytes_) throw too_short();
     return;

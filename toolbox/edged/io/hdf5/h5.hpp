@@ -112,7 +112,7 @@ class H5File {
 
   /// Nothing if there is no such data set or it is not readable.
   std::optional<H5Array> find(const std::string& path) const;
-  /// The same; nothing for the path "".
+  /// As find(); nothing for the path "".
   std::optional<H5Array> find_named(std::string_view path) const {
     return path.empty() ? std::nullopt : find(std::string(path));
   }
@@ -135,8 +135,5 @@ class H5File {
   H5Handle file_;
   bool cut_ = false;
 };
-
-/// True for the first bytes of an HDF5 file.
-bool is_hdf5(ByteSpan head);
 
 }  // namespace edged

@@ -50,7 +50,7 @@ struct EventsPlace {
   std::size_t camera = 0;  ///< within the file
 };
 
-/// Of all event cameras: in the file itself, else in that of the right camera.
+/// The places of all event cameras: in the file itself, else in that of the right camera.
 std::vector<EventsPlace> event_places(const H5File& file, const Hdf5Layout& layout) {
   std::vector<EventsPlace> places = {{file.path(), 0}};
   while (H5Events::find(file, layout, places.size())) places.push_back({file.path(), places.size()});
@@ -85,10 +85,10 @@ void add_event_cameras(H5Cameras& cameras, const H5File& main, const Hdf5Layout&
       throw InputError::format("{}: has no events as {} has them; leave it out with --set cameras={}", path.string(),
                                main.path().filename().string(), cameras.known.front().name);
     if (file.cut()) cameras.cut.push_back(path);
-    auto said = options.geometry ? options.geometry : stated_sensor(file, layout, camera);
-    if (!said) said = usual_sensor;
-    if (!said && layout.width > 0) said = cv::Size(layout.width, layout.height);
-    recorded.sensor = event_sensor_size(path, said, rig, recorded.name);
+    auto stated = options.geometry ? options.geometry : stated_sensor(file, layout, camera);
+    if (!stated) stated = usual_sensor;
+    if (!stated && layout.width > 0) stated = cv::Size(layout.width, layout.height);
+    recorded.sensor = event_sensor_size(path, stated, rig, recorded.name);
     cameras.recorded.push_back(recorded);
     cameras.events.push_back(std::move(*events));
   }

@@ -23,7 +23,7 @@ struct H5Images {
 /// The cameras of a recording, those that are read.
 struct H5Cameras {
   std::vector<RecordedCamera> recorded;  ///< as StreamedDataset needs them
-  std::vector<RecordedCamera> known;     ///< the same with those that are not read
+  std::vector<RecordedCamera> known;     ///< also those that are not read
   std::vector<H5Events> events;
   std::vector<std::variant<H5Images, StampedLines<FrameEntry>::Spec>> frames;
   std::vector<std::filesystem::path> cut;  ///< files that end too early

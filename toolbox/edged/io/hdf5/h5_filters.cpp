@@ -52,7 +52,7 @@ Bytes undo_ecf(ByteSpan packed, std::size_t max_bytes) {
 }
 
 /// Replaces the buffer of the library by `bytes`. Returns their number, which is 0 on failure.
-std::size_t hand_over(const Bytes& bytes, std::size_t* buffer_size, void** buffer) {
+std::size_t replace_buffer(const Bytes& bytes, std::size_t* buffer_size, void** buffer) {
   void* fresh = bytes.empty() ? nullptr : H5allocate_memory(bytes.size(), false);
   if (!fresh) return 0;
   std::memcpy(fresh, bytes.data(), bytes.size());
@@ -77,9 +77,10 @@ template <H5Filter filter>
 std::size_t filter_callback(unsigned flags, std::size_t parameter_count, const unsigned* parameters, std::size_t bytes,
                             std::size_t* buffer_size, void** buffer) noexcept try {
   const ByteSpan data(static_cast<const std::uint8_t*>(*buffer), bytes);
-  if (flags & H5Z_FLAG_REVERSE) return hand_over(undo_h5_filter(filter, data, chunk_bytes_read), buffer_size, buffer);
+  if (flags & H5Z_FLAG_REVERSE)
+    return replace_buffer(undo_h5_filter(filter, data, chunk_bytes_read), buffer_size, buffer);
   if (filter != H5Filter::Blosc) return 0;
-  return hand_over(apply_blosc(data, parameter_count, parameters), buffer_size, buffer);
+  return replace_buffer(apply_blosc(data, parameter_count, parameters), buffer_size, buffer);
 } catch (const std::exception&) {
   return 0;
 }

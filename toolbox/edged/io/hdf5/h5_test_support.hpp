@@ -136,4 +136,12 @@ inline void put_event_columns(H5Maker& file, const std::string& group, const std
   file.column(group + "/p", p, pack, chunk_rows);
 }
 
+/// A new file with events as these columns in /events.
+inline std::filesystem::path write_events(const std::filesystem::path& path, const std::vector<Event>& events,
+                                          H5Pack pack = H5Pack::None, hsize_t chunk_rows = 0) {
+  H5Maker file(path);
+  put_event_columns(file, "/events", events, 0, pack, chunk_rows);
+  return path;
+}
+
 }  // namespace edged

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The reader of all layouts. Of the sources of events, frames and IMU samples, it reads the one that lags most.
-#include "edged/io/hdf5/hdf5_dataset.hpp"
+#include "edged/io/hdf5/hdf5.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -13,7 +13,6 @@
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/hdf5/h5_cameras.hpp"
-#include "edged/io/hdf5/h5_truth.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"
 
@@ -23,20 +22,6 @@ namespace {
 
 constexpr std::uint64_t kEventsAtOnce = 65536, kSamplesAtOnce = 1024;
 constexpr Duration kStep = std::chrono::milliseconds(50);  // of one stream at a time
-
-/// IMU samples of a file: angular velocity and specific force. Without the second array, both are in the first.
-struct H5Imu {
-  H5Array first;
-  std::optional<H5Array> second;
-  H5Stamps stamps;
-};
-
-std::optional<H5Imu> find_imu(const H5File& file, const Hdf5Layout& layout) {
-  auto gyro = file.find_named(layout.gyro), accel = file.find_named(layout.accel),
-       stamps = file.find_named(layout.imu_stamps);
-  if (!gyro || !stamps || gyro->columns() != (accel ? 3U : 6U) || (accel && accel->columns() != 3)) return std::nullopt;
-  return H5Imu{std::move(*gyro), std::move(accel), H5Stamps(std::move(*stamps))};
-}
 
 cv::Mat h5_image(const H5Array& pixels, std::uint64_t row, bool cut) {
   const auto& shape = pixels.shape();
@@ -67,7 +52,8 @@ class Hdf5Dataset final : public StreamedDataset {
       if (cameras.events[i].ragged())
         repairs_.add("events: arrays of different lengths",
                      name_ + ": x, y, t and p differ in length; the shortest counts");
-      add_events(std::move(cameras.events[i]), i);
+      add_rows<Event>(std::move(cameras.events[i]), {kEventsAtOnce, 1024, "events", Modality::Events},
+                      [this, i](std::span<const Event> part) { push_events(part, i); });
     }
     for (std::size_t i = 0; i < cameras.frames.size(); ++i) {
       if (auto* images = std::get_if<H5Images>(&cameras.frames[i])) {
@@ -76,10 +62,10 @@ class Hdf5Dataset final : public StreamedDataset {
         add_image_files(std::get<StampedLines<FrameEntry>::Spec>(cameras.frames[i]), i);
       }
     }
-    auto imu = find_imu(file, layout);
+    auto imu = H5Imu::find(file, layout);
     const bool has_imu = imu || side_.imu;
     if (imu) {
-      add_imu(std::move(*imu));
+      add_rows<ImuSample>(std::move(*imu), {kSamplesAtOnce, 16, "imu", std::nullopt}, push_samples());
     } else if (side_.imu) {
       add_imu_lines(*side_.imu);
     }
@@ -146,27 +132,48 @@ class Hdf5Dataset final : public StreamedDataset {
     }
   }
 
+  /// How rows are read: so many at once, and so few around damage. Those of an unwanted modality are not read.
+  struct RowReading {
+    std::uint64_t at_once, smallest;
+    const char* subject;
+    std::optional<Modality> modality;
+  };
+
+  /// A source of the rows of H5Events or H5Imu.
+  template <typename T, typename Rows>
+  void add_rows(Rows from, const RowReading& how, std::function<void(std::span<const T>)> push) {
+    const auto refill = [this, rows = std::make_shared<Rows>(std::move(from)), how,
+                         at = std::uint64_t{0}](std::vector<T>& items) mutable {
+      if (at == rows->rows() || !wants(how.modality)) return false;
+      const std::uint64_t count = std::min(how.at_once, rows->rows() - at);
+      read_parts(at, count, how.smallest, how.subject, [&](std::uint64_t first, std::uint64_t n) {
+        std::vector<T> read = rows->read(first, n);
+        std::erase_if(read, [&](const T& item) { return !is_stamp(item.t, how.subject) || !is_finite(item); });
+        items.insert(items.end(), read.begin(), read.end());
+      });
+      at += count;
+      return true;
+    };
+    add_source<T>(refill, std::move(push));
+  }
+
   bool is_stamp(Timestamp t, const char* subject) {
     if (t != Timestamp::min()) return true;
     repairs_.add(std::string(subject) + ": stamp out of range", fmt::format("{}: a stamp of the {}", name_, subject));
     return false;
   }
 
-  void add_events(H5Events events, std::size_t camera) {
-    constexpr std::uint64_t kSmallestPart = 1024;
-    const auto refill = [this, shared = std::make_shared<H5Events>(std::move(events)),
-                         at = std::uint64_t{0}](std::vector<Event>& items) mutable {
-      if (at == shared->rows() || !wants(Modality::Events)) return false;
-      const std::uint64_t count = std::min(kEventsAtOnce, shared->rows() - at);
-      read_parts(at, count, kSmallestPart, "events", [&](std::uint64_t first, std::uint64_t n) {
-        std::vector<Event> read = shared->read(first, n);
-        std::erase_if(read, [this](const Event& e) { return !is_stamp(e.t, "events"); });
-        items.insert(items.end(), read.begin(), read.end());
-      });
-      at += count;
-      return true;
+  static bool is_finite(const Event& /*event*/) { return true; }
+  bool is_finite(const ImuSample& sample) {
+    if (sample.gyro_B.allFinite() && sample.accel_B.allFinite()) return true;
+    repairs_.add("imu: not finite", name_ + ": an IMU sample is not finite");
+    return false;
+  }
+
+  std::function<void(std::span<const ImuSample>)> push_samples() {
+    return [this](std::span<const ImuSample> part) {
+      for (const ImuSample& sample : part) push_imu(sample);
     };
-    add_source<Event>(refill, [this, camera](std::span<const Event> part) { push_events(part, camera); });
   }
 
   void add_images(H5Images images, std::size_t camera, bool cut) {
@@ -202,71 +209,13 @@ class Hdf5Dataset final : public StreamedDataset {
     }});
   }
 
-  void add_imu(H5Imu imu) {
-    constexpr std::uint64_t kSmallestPart = 16;
-    const auto shared = std::make_shared<H5Imu>(std::move(imu));
-    std::uint64_t rows = std::min(shared->first.rows(), shared->stamps.rows());
-    if (shared->second) rows = std::min(rows, shared->second->rows());
-    const bool accel_first = !shared->second && is_accel_first(shared->first);
-    const auto refill = [this, shared, rows, accel_first,
-                         at = std::uint64_t{0}](std::vector<ImuSample>& items) mutable {
-      if (at == rows) return false;
-      const std::uint64_t count = std::min(kSamplesAtOnce, rows - at);
-      read_parts(at, count, kSmallestPart, "imu", [&](std::uint64_t first, std::uint64_t n) {
-        for (const ImuSample& sample : read_samples(*shared, accel_first, first, n))
-          if (is_stamp(sample.t, "imu") && is_finite(sample)) items.push_back(sample);
-      });
-      at += count;
-      return true;
-    };
-    add_source<ImuSample>(refill, [this](std::span<const ImuSample> part) { push_samples(part); });
-  }
-
-  void push_samples(std::span<const ImuSample> part) {
-    for (const ImuSample& sample : part) push_imu(sample);
-  }
-
-  bool is_finite(const ImuSample& sample) {
-    if (sample.gyro_B.allFinite() && sample.accel_B.allFinite()) return true;
-    repairs_.add("imu: not finite", name_ + ": an IMU sample is not finite");
-    return false;
-  }
-
-  /// For rows with both sensors in an undocumented order. The three columns with gravity are the specific force.
-  static bool is_accel_first(const H5Array& rows) try {
-    constexpr double kGravity = 9.81;
-    const std::uint64_t count = std::min(kSamplesAtOnce, rows.rows());
-    const auto values = rows.read<double>(0, count);
-    double first = 0, second = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      first += Eigen::Vector3d(&values[6 * i]).norm();
-      second += Eigen::Vector3d(&values[6 * i + 3]).norm();
-    }
-    const auto n = static_cast<double>(std::max<std::uint64_t>(count, 1));
-    return std::abs(first / n - kGravity) < std::abs(second / n - kGravity);
-  } catch (const Damage&) {
-    return true;
-  }
-
-  static std::vector<ImuSample> read_samples(const H5Imu& imu, bool accel_first, std::uint64_t first, std::uint64_t n) {
-    const auto stamps = imu.stamps.read(first, n);
-    const auto a = imu.first.read<double>(first, n);
-    const auto b = imu.second ? imu.second->read<double>(first, n) : std::vector<double>();
-    std::vector<ImuSample> samples(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Eigen::Vector3d one(imu.second ? &a[3 * i] : &a[6 * i]), other(imu.second ? &b[3 * i] : &a[6 * i + 3]);
-      samples[i] = accel_first ? ImuSample{stamps[i], other, one} : ImuSample{stamps[i], one, other};
-    }
-    return samples;
-  }
-
   void add_imu_lines(const StampedLines<ImuSample>::Spec& spec) {
     const auto refill = [lines =
                              std::make_shared<StampedLines<ImuSample>>(spec, repairs_)](std::vector<ImuSample>& items) {
       while (lines->peek() && items.size() < kSamplesAtOnce) items.push_back(lines->pop());
       return !items.empty();
     };
-    add_source<ImuSample>(refill, [this](std::span<const ImuSample> part) { push_samples(part); });
+    add_source<ImuSample>(refill, push_samples());
   }
 
   SideFiles side_;

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Each layout and compression of HDF5 recordings, their other files, damage, the real sample.
-#include "edged/io/hdf5/hdf5_dataset.hpp"
+#include "edged/io/hdf5/hdf5.hpp"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
+#include "edged/io/damage_test_support.hpp"
 #include "edged/io/hdf5/h5_test_support.hpp"
-#include "edged/io/open_recording.hpp"
 #include "edged/io/parse/evt_test_support.hpp"
-#include "edged/io/test_support.hpp"
 
 /// For the leak sanitizer: the library itself leaks a few hundred bytes with some damaged files.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }  // NOLINT
@@ -35,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(, H5Packs,
 TEST_P(H5Packs, GiveBackTheEvents) {
   TempFolder folder;
   const std::vector<Event> events = vga_events(200'000);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "a.h5"), "/events", events, 0, GetParam(), 30'000);
+  write_events(folder.path() / "a.h5", events, GetParam(), 30'000);
   const Recording recording = open_recording(folder.path() / "a.h5", nullptr, kVga);
   EXPECT_EQ(recording.dataset->info().begin, events.front().t);
   EXPECT_EQ(recording.dataset->info().end, events.back().t);
@@ -105,8 +104,7 @@ TEST(Hdf5, VectorSequencesHaveImuImagesInTheMiddleOfTheirExposureAndTruth) {
   TempFolder folder;
   const std::vector<Event> events = vga_events(20'000);
   const std::string name = "desk_fast1.synced.";
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / (name + "left_event.hdf5")), "/events", events, 0,
-                    H5Pack::Zstd, 4096);
+  write_events(folder.path() / (name + "left_event.hdf5"), events, H5Pack::Zstd, 4096);
   folder.write(name + "imu.txt",
                "# IMU of desk_fast1\n# more\n# timestamp gx gy gz ax ay az qx qy qz qw\n"
                "0.01 1 2 3 4 5 6 0 0 0 1\n0.02 1 2 3 4 5 7 0 0 0 1\n");
@@ -137,9 +135,8 @@ TEST(Hdf5, TumVieSequencesHaveStampsInMicrosecondsAndExposuresInAFileOfTheirOwn)
   TempFolder folder;
   const std::vector<Event> events = generated_events(20'000, 1280, 720, 20);
   const std::string data = "mocap-desk-vi_gt_data/";
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "mocap-desk-events_left.h5"), "/events", events, 0,
-                    H5Pack::Blosc, 4096);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "mocap-desk-events_right.h5"), "/events", events);
+  write_events(folder.path() / "mocap-desk-events_left.h5", events, H5Pack::Blosc, 4096);
+  write_events(folder.path() / "mocap-desk-events_right.h5", events);
   folder.write(data + "imu_data.txt", "# timestamp[us] gx gy gz ax ay az temperature\n10000.5 1 2 3 4 5 6 30\n");
   folder.write(data + "mocap_data.txt", "# timestamp px py pz qx qy qz qw\n2.0e+04 1 2 3 0 0 0 1\n");
   folder.write(data + "left_images/image_timestamps_left.txt", "# timestamp [us]\n10000\n60000\n");
@@ -257,7 +254,7 @@ TEST(Hdf5, EventsOutOfOrderAreSortedInAndCounted) {
   const std::vector<Event> events = vga_events(20'000);
   std::vector<Event> mixed = events;
   for (std::size_t i = 100; i + 20 < mixed.size(); i += 1000) std::swap(mixed[i], mixed[i + 20]);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "a.h5"), "/events", mixed);
+  write_events(folder.path() / "a.h5", mixed);
   const Recording recording = open_recording(folder.path() / "a.h5", nullptr, kVga);
   const Contents c = read_all(*recording.dataset);
   EXPECT_EQ(c.events.size(), events.size());
@@ -274,10 +271,10 @@ TEST(Hdf5, RefusalsSayWhatIsWrong) {
   EXPECT_THAT(refusal(), HasSubstr("/depth/map (2, 3)"));
   EXPECT_THAT(refusal(), HasSubstr("/prophesee/left (m3ed)"));
   EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("/depth/map (2, 3)"));
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "a.h5"), "/events", vga_events(5000));
+  write_events(folder.path() / "a.h5", vga_events(5000));
   EXPECT_THAT(refusal(), HasSubstr("--geometry"));
   EXPECT_THAT(refusal({.geometry = cv::Size(100, 100)}), HasSubstr("outside the 100 x 100"));
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "b.h5"), "/events", vga_events(5000));
+  write_events(folder.path() / "b.h5", vga_events(5000));
   EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("give one of"));
   folder.write("a.h5", "\x89HDF\r\n\x1a\nand no more");
   EXPECT_THAT(refusal(), HasSubstr("cannot be opened"));
@@ -285,38 +282,31 @@ TEST(Hdf5, RefusalsSayWhatIsWrong) {
 
 TEST_P(H5Packs, CutAnywhereItIsRefusedOrGivesEventsOfTheRecording) {
   TempFolder folder;
-  const std::vector<Event> events = vga_events(30'000);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "whole.h5"), "/events", events, 0, GetParam(), 2000);
-  const std::string whole = read_text(folder.path() / "whole.h5");
+  const std::string whole = read_text(write_events(folder.path() / "whole.h5", vga_events(30'000), GetParam(), 2000));
   std::size_t most = 0;
-  for (int percent = 0; percent < 100; ++percent) {
-    const auto file = folder.write("a.h5", whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
-    Contents c;
-    std::ignore = input_error([&] { c = read_all(*open_recording(file, nullptr, kVga).dataset); });
-    EXPECT_LE(c.events.size(), events.size());
-    most = std::max(most, c.events.size());
+  for (std::size_t percent = 0; percent < 100; ++percent) {
+    const std::size_t events = read_damaged(folder, cut_at(whole, percent), kVga).events.size();
+    EXPECT_LE(events, 30'000u);
+    most = std::max(most, events);
   }
-  EXPECT_GT(most, events.size() / 2);  // the last array begins at about three quarters of the file
+  EXPECT_GT(most, 15'000u);  // the last array begins at about three quarters of the file
 }
 
 TEST_P(H5Packs, FlippedBytesAreRefusedOrPassedOver) {
   TempFolder folder;
-  const std::vector<Event> events = vga_events(30'000);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "whole.h5"), "/events", events, 0, GetParam(), 2000);
-  const std::string whole = read_text(folder.path() / "whole.h5");
+  const std::string whole = read_text(write_events(folder.path() / "whole.h5", vga_events(30'000), GetParam(), 2000));
   std::mt19937 random(11);
   for (int i = 0; i < 100; ++i) {
     std::string damaged = whole;
     for (int k = 0; k < 20; ++k) damaged[random() % whole.size()] = static_cast<char>(random());
-    const auto file = folder.write("a.h5", damaged);
-    std::ignore = input_error([&] { read_all(*open_recording(file, nullptr, kVga).dataset); });
+    read_damaged(folder, damaged, kVga);
   }
 }
 
 TEST(Hdf5, AChunkThatCannotBeUnpackedIsCountedAndPassedOver) {
   TempFolder folder;
   const std::vector<Event> events = vga_events(30'000);
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "a.h5"), "/events", events, 0, H5Pack::Zstd, 2000);
+  write_events(folder.path() / "a.h5", events, H5Pack::Zstd, 2000);
   std::string bytes = read_text(folder.path() / "a.h5");
   const std::string zstd_magic("\x28\xb5\x2f\xfd", 4);
   std::size_t at = bytes.find(zstd_magic);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written files have the layout that the tools of DSEC expect, and read back. Events of all formats:
 // write_recording_test.cpp.
-#include "edged/io/hdf5/hdf5_writer.hpp"
+#include "edged/io/hdf5/hdf5.hpp"
 
 #include <gtest/gtest.h>
 

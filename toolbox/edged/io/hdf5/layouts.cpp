@@ -21,6 +21,10 @@ constexpr std::array kLayouts = {
                .gyro = "/ovc/imu/omega",
                .accel = "/ovc/imu/accel",
                .imu_stamps = "/ovc/imu/ts",
+               .poses = "/Cn_T_C0",
+               .pose_stamps = "/ts",
+               .truth_files = {"_pose_gt.h5", "_depth_gt.h5"},
+               .inverse_poses = true,
                .sensor = "/prophesee/left/calib/resolution",
                .width = 1280,
                .height = 720},
@@ -30,6 +34,9 @@ constexpr std::array kLayouts = {
                .image_stamps = "/davis/left/image_raw_ts",
                .gyro = "/davis/left/imu",
                .imu_stamps = "/davis/left/imu_ts",
+               .poses = "/davis/left/pose",
+               .pose_stamps = "/davis/left/pose_ts",
+               .truth_files = {"_gt.hdf5"},
                .width = 346,
                .height = 260},
     Hdf5Layout{.name = "metavision", .events = "/CD/events"},
@@ -233,6 +240,51 @@ std::optional<Timestamp> H5Events::last() const try {
   return t == kNoStamp ? std::nullopt : std::optional(t);
 } catch (const Damage&) {
   return std::nullopt;
+}
+
+std::optional<H5Imu> H5Imu::find(const H5File& file, const Hdf5Layout& layout) {
+  auto gyro = file.find_named(layout.gyro), accel = file.find_named(layout.accel),
+       stamps = file.find_named(layout.imu_stamps);
+  if (!gyro || !stamps || gyro->columns() != (accel ? 3U : 6U) || (accel && accel->columns() != 3)) return std::nullopt;
+  return H5Imu(std::move(*gyro), std::move(accel), H5Stamps(std::move(*stamps)));
+}
+
+H5Imu::H5Imu(H5Array first, std::optional<H5Array> second, H5Stamps stamps)
+    : first_(std::move(first)),
+      second_(std::move(second)),
+      stamps_(std::move(stamps)),
+      rows_(std::min(first_.rows(), stamps_.rows())) {
+  if (second_) rows_ = std::min(rows_, second_->rows());
+  swapped_ = !second_ && accel_first();
+}
+
+/// For rows with both sensors in an undocumented order. The three columns with gravity are the specific force.
+bool H5Imu::accel_first() const try {
+  constexpr std::uint64_t kFirstSamples = 1024;
+  constexpr double kGravity = 9.81;
+  const std::uint64_t count = std::min(kFirstSamples, first_.rows());
+  const auto values = first_.read<double>(0, count);
+  double first = 0, second = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    first += Eigen::Vector3d(&values[6 * i]).norm();
+    second += Eigen::Vector3d(&values[6 * i + 3]).norm();
+  }
+  const auto n = static_cast<double>(std::max<std::uint64_t>(count, 1));
+  return std::abs(first / n - kGravity) < std::abs(second / n - kGravity);
+} catch (const Damage&) {
+  return true;
+}
+
+std::vector<ImuSample> H5Imu::read(std::uint64_t first, std::uint64_t count) const {
+  const auto stamps = stamps_.read(first, count);
+  const auto a = first_.read<double>(first, count);
+  const auto b = second_ ? second_->read<double>(first, count) : std::vector<double>();
+  std::vector<ImuSample> samples(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d one(second_ ? &a[3 * i] : &a[6 * i]), other(second_ ? &b[3 * i] : &a[6 * i + 3]);
+    samples[i] = swapped_ ? ImuSample{stamps[i], other, one} : ImuSample{stamps[i], one, other};
+  }
+  return samples;
 }
 
 }  // namespace edged

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The layouts of data sets in HDF5, and their events independent of the layout.
+// The layouts of data sets in HDF5, and their events and IMU samples independent of the layout.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,9 +25,13 @@ struct Hdf5Layout {
   std::string_view images = "", image_stamps = "";  ///< (n, height, width[, channels])
   std::string_view gyro = "", accel = "";           ///< (n, 3) each [rad/s, m/s^2]; no accel: gyro is (n, 6) with both
   std::string_view imu_stamps = "";
-  std::string_view poses = "", pose_stamps = "";  ///< (n, 7): x y z [m] qx qy qz qw
-  std::string_view sensor = "";                   ///< width and height of the event sensor
-  int width = 0, height = 0;  ///< of the event sensor in all recordings of the data set; 0: not constant
+  std::string_view poses = "", pose_stamps = "";  ///< (n, 7): x y z [m] qx qy qz qw, or (n, 4, 4)
+  /// The poses are those of the event camera, in a file NAME + one of these beside NAME or NAME_data. None: they are in
+  /// the file of the events.
+  std::array<std::string_view, 2> truth_files = {};
+  bool inverse_poses = false;    ///< the poses are T_X_W
+  std::string_view sensor = "";  ///< width and height of the event sensor
+  int width = 0, height = 0;     ///< size of the event sensor in all recordings of the data set; 0: not constant
 };
 
 std::span<const Hdf5Layout> hdf5_layouts();
@@ -78,6 +83,27 @@ class H5Events {
   Duration offset_;
   bool cut_, ragged_ = false;
   std::uint64_t rows_ = 0;
+};
+
+/// The IMU samples of a file in one of the layouts.
+class H5Imu {
+ public:
+  /// Nothing if the file has no IMU in this layout.
+  static std::optional<H5Imu> find(const H5File& file, const Hdf5Layout& layout);
+
+  std::uint64_t rows() const { return rows_; }
+  /// A stamp out of range is Timestamp::min(). Throws Damage.
+  std::vector<ImuSample> read(std::uint64_t first, std::uint64_t count) const;
+
+ private:
+  H5Imu(H5Array first, std::optional<H5Array> second, H5Stamps stamps);
+  bool accel_first() const;
+
+  H5Array first_;
+  std::optional<H5Array> second_;  ///< none: both sensors are in the first array
+  H5Stamps stamps_;
+  std::uint64_t rows_;
+  bool swapped_ = false;  ///< the specific force comes first
 };
 
 }  // namespace edged

@@ -4,21 +4,30 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "edged/io/hdf5/h5_truth.hpp"
+#include "edged/dataset.hpp"
+#include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/repairs.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
 
 namespace edged {
 
+/// Ground truth, read on demand.
+struct TruthSource {
+  std::string frame = "body";                                     ///< X of its T_W_X
+  std::function<std::optional<GroundTruth>(Repairs&)> read = {};  ///< empty without ground truth
+};
+
 struct SideFiles {
   std::string set = {};                 ///< "dsec", "vector", "tum-vie", "eds"; "" if no data set is recognised
-  std::optional<cv::Size> sensor = {};  ///< of the event camera [px] in all recordings of the data set
-  std::vector<StampedLines<FrameEntry>::Spec> frames = {};  ///< of each frame camera, left first
+  std::optional<cv::Size> sensor = {};  ///< size of the event camera [px] in all recordings of the data set
+  std::vector<StampedLines<FrameEntry>::Spec> frames = {};  ///< one for each frame camera, left first
   std::optional<StampedLines<ImuSample>::Spec> imu = {};
   TruthSource truth = {};
 };
@@ -29,5 +38,8 @@ SideFiles find_side_files(const std::filesystem::path& events_file, std::string_
 
 /// The events file of the right camera beside or around that of the left one, if it is there.
 std::optional<std::filesystem::path> find_right_events(const std::filesystem::path& left_file);
+
+/// Ground truth in HDF5: in the file of the events, or in another file of its folder (MVSEC, M3ED).
+TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout);
 
 }  // namespace edged

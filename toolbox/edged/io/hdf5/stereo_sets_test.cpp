@@ -59,7 +59,7 @@ TEST(StereoSets, DsecHasAFolderForEachSide) {
     for (const std::string side : {"left", "right"}) {
       const auto place = folder.path() / (zipped_names ? "seq_events_" + side : "events/" + side);
       std::filesystem::create_directories(place);
-      put_event_columns(*std::make_unique<H5Maker>(place / "events.h5"), "/events", events_of_side(side == "right"));
+      write_events(place / "events.h5", events_of_side(side == "right"));
       H5Maker(place / "rectify_map.h5").array("/rectify_map", std::vector<float>(8), {2, 2, 2});
       put_images(folder, "images/" + side + "/distorted", side == "right");
     }
@@ -74,8 +74,7 @@ TEST(StereoSets, DsecHasAFolderForEachSide) {
 TEST(StereoSets, VectorHasFilesForEachSide) {
   TempFolder folder;
   for (const std::string side : {"left", "right"}) {
-    put_event_columns(*std::make_unique<H5Maker>(folder.path() / fmt::format("desk.synced.{}_event.hdf5", side)),
-                      "/events", events_of_side(side == "right"));
+    write_events(folder.path() / fmt::format("desk.synced.{}_event.hdf5", side), events_of_side(side == "right"));
     const std::string camera = fmt::format("desk.synced.{}_camera", side);
     put_images(folder, camera, side == "right");
     folder.write(camera + "/timestamp.txt", "# start and end\n0.010 0.012\n0.020 0.024\n");
@@ -86,8 +85,7 @@ TEST(StereoSets, VectorHasFilesForEachSide) {
 TEST(StereoSets, TumVieHasExposuresForEachSide) {
   TempFolder folder;
   for (const std::string side : {"left", "right"}) {
-    put_event_columns(*std::make_unique<H5Maker>(folder.path() / fmt::format("desk-events_{}.h5", side)), "/events",
-                      events_of_side(side == "right"));
+    write_events(folder.path() / fmt::format("desk-events_{}.h5", side), events_of_side(side == "right"));
     const std::string images = fmt::format("desk-vi_gt_data/{}_images", side);
     put_images(folder, images, side == "right");
     folder.write(fmt::format("{}/image_timestamps_{}.txt", images, side), "10000\n60000\n");
@@ -142,8 +140,7 @@ TEST(StereoSets, MvsecHasADavisOnEachSide) {
 
 TEST(StereoSets, ARightFileWithoutEventsConcernsOnlyThoseWhoWantIt) {
   TempFolder folder;
-  put_event_columns(*std::make_unique<H5Maker>(folder.path() / "desk-events_left.h5"), "/events",
-                    events_of_side(false));
+  write_events(folder.path() / "desk-events_left.h5", events_of_side(false));
   std::make_unique<H5Maker>(folder.path() / "desk-events_right.h5")->column("/other", std::vector<int>{1});
   EXPECT_THAT(described(folder.path(), {}), ElementsAre("events 5000 from (1, 0)"));
   const std::string refusal = input_error([&] { described(folder.path()); });

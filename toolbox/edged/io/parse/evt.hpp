@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the formats of Prophesee sensors: EVT 2.0, 2.1 and 3.0, and the records of DAT files.
+// Decodes and encodes the formats of Prophesee sensors: EVT 2.0, 2.1 and 3.0, and the records of DAT files.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "edged/measurement.hpp"
@@ -16,7 +17,7 @@ namespace edged {
 enum class EvtFormat {
   Evt2,         ///< words of 32 bits, one event each
   Evt21,        ///< words of 64 bits, up to 32 events of one row each
-  Evt21Legacy,  ///< the same, the upper half sent first (IMX636)
+  Evt21Legacy,  ///< words of 64 bits whose upper half is sent first (IMX636)
   Evt3,         ///< words of 16 bits that change a state; up to 12 events each
   Dat,          ///< records of 64 bits with their full time
 };
@@ -70,6 +71,29 @@ class EvtDecoder {
   Counts counts_;
   std::array<std::uint8_t, 8> cut_{};  ///< the first bytes of a word that ends in the next chunk
   std::size_t cut_bytes_ = 0;
+};
+
+/// Encodes events in time order for EvtDecoder. Stamps are rounded down to microseconds. Bits of the first stamp beyond
+/// the counter (EVT 3: 24 bits, EVT 2: 34, DAT: 32) are lost, and later stamps continue from there. Columns and rows
+/// have 11 bits (DAT: 14).
+class EvtEncoder {
+ public:
+  explicit EvtEncoder(EvtFormat format) : format_(format) {}
+
+  /// The bytes of these events; valid until the next call.
+  const std::string& encode(std::span<const Event> events);
+
+ private:
+  std::size_t write_row(std::span<const Event> events);
+  void write_single(const Event& e, std::uint64_t t_us);
+  void write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t mask);
+  void write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask);
+  void put3(unsigned type, std::uint64_t payload);
+  void put21(std::uint64_t word);
+
+  EvtFormat format_;
+  std::uint64_t high_ = ~std::uint64_t{0};  ///< upper part of the time last written
+  std::string bytes_;
 };
 
 }  // namespace edged

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/io/archive/bytes.hpp"
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 
 namespace edged {
 

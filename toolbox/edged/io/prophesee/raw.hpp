@@ -6,6 +6,7 @@
 #include <string>
 
 #include "edged/io/archive/bytes.hpp"
+#include "edged/io/core/recording_writer.hpp"
 #include "edged/io/parse/evt.hpp"
 #include "edged/io/recording.hpp"
 
@@ -26,5 +27,14 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file);
 bool is_prophesee_file(ByteSpan head);
 /// Options used: the geometry of the sensor.
 Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options);
+
+/// Key of a header line that only this program knows: microseconds to be added to all stamps, as the counters of EVT 3
+/// (16.8 s) and DAT (71 min) cannot hold a time of day. Other programs ignore it and read stamps that begin at zero.
+inline constexpr std::string_view kTimeOffsetKey = "edged_time_offset_us";
+
+/// Events as EVT 3.0, with stamps in whole microseconds.
+std::unique_ptr<RecordingWriter> write_raw(const WriterSetup& setup);
+/// Events as DAT records of 8 bytes.
+std::unique_ptr<RecordingWriter> write_dat(const WriterSetup& setup);
 
 }  // namespace edged

@@ -7,9 +7,8 @@
 
 #include <random>
 
-#include "edged/io/open_recording.hpp"
+#include "edged/io/damage_test_support.hpp"
 #include "edged/io/parse/evt_test_support.hpp"
-#include "edged/io/test_support.hpp"
 
 namespace edged {
 namespace {
@@ -65,36 +64,27 @@ TEST_P(PropheseeFile, CutAnywhereItGivesWhatCameBefore) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(2000, 1280, 720, 20);
   const std::string whole = GetParam().header + EvtEncoder(GetParam().format).encode(events);
-  std::size_t before = 0;
-  for (int percent = 0; percent < 100; ++percent) {
-    const auto file = folder.write("a.raw", whole.substr(0, whole.size() * static_cast<std::size_t>(percent) / 100));
-    std::vector<Event> read;
-    const std::string error = input_error([&] { read = read_all(*open_recording(file).dataset).events; });
-    EXPECT_EQ(error.empty(), !read.empty()) << percent;
-    ASSERT_GE(read.size(), before) << percent;
-    EXPECT_TRUE(std::equal(read.begin(), read.end(), events.begin())) << percent;
-    before = read.size();
+  EXPECT_GT(expect_beginnings(folder, whole, events), 1900u);
+  for (std::size_t percent = 0; percent < 100; ++percent) {
+    const DamagedRead read = read_damaged(folder, cut_at(whole, percent));
+    EXPECT_EQ(read.refusal.empty(), !read.events.empty()) << percent;
   }
-  EXPECT_GT(before, 1900u);
 }
 
 TEST_P(PropheseeFile, FlippedBitsAreSurvived) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(2000, 1280, 720, 100);
-  const std::string whole = GetParam().header + EvtEncoder(GetParam().format).encode(events);
+  const std::string &header = GetParam().header, whole = header + EvtEncoder(GetParam().format).encode(events);
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
-    std::string damaged = whole;
     // In every third file, damages the header, which may change the format.
-    const std::size_t from = i % 3 == 0 ? 0 : GetParam().header.size(), room = (i % 3 == 0 ? 200 : whole.size() - from);
-    const std::size_t at = from + random() % room;
-    damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
-    const auto file = folder.write("a.raw", damaged);
-    std::vector<Event> read;
-    const std::string error = input_error([&] { read = read_all(*open_recording(file).dataset).events; });
-    if (i % 3 == 0) continue;
-    EXPECT_EQ(error, "");
-    EXPECT_GT(read.size(), 1500u) << "byte " << at;
+    if (i % 3 == 0) {
+      read_damaged(folder, flip_bits(whole, random, 0, 200));
+      continue;
+    }
+    const DamagedRead read = read_damaged(folder, flip_bits(whole, random, header.size(), whole.size()));
+    EXPECT_EQ(read.refusal, "");
+    EXPECT_GT(read.events.size(), 1500u);
   }
 }
 

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Real bags as recordings.
-#include "edged/io/ros/ros_dataset.hpp"
+#include "edged/io/ros/ros.hpp"
 
 #include <gmock/gmock.h>
 
 #include <array>
 #include <random>
 
-#include "edged/io/open_recording.hpp"
+#include "edged/io/damage_test_support.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 #include "edged/io/ros/bag/open_messages.hpp"
-#include "edged/io/test_support.hpp"
+#include "edged/io/ros/messages/event_packets.hpp"
 
 namespace edged {
 namespace {
@@ -89,7 +89,7 @@ TEST(RosDataset, PacketsOfACompressedDavisRecordingKeepToTheirTimeBases) {
   const auto source = open_messages(path, &repairs);
   ASSERT_EQ(source->topics().size(), 1u);
   EXPECT_EQ(source->topics().front().count, 100u);
-  EventPacketDecoder decoder;
+  EventMessageDecoder decoder;
   std::size_t messages = 0;
   Timestamp last = Timestamp::min();
   while (const auto message = source->next()) {
@@ -197,11 +197,9 @@ TEST(RosDataset, ABagCutAnywhereGivesWhatCameBeforeOrIsRefused) {
   TempFolder folder;
   std::size_t before = 0;
   for (std::size_t percent = 0; percent < 100; percent += 11) {
-    const fs::path cut = folder.write("cut.bag", whole.substr(0, whole.size() * percent / 100));
-    std::size_t events = 0;
-    const std::string refusal = input_error([&] { events = read_all(*open_recording(cut).dataset).events.size(); });
-    EXPECT_GE(events, before) << percent << " %: " << refusal;
-    before = events;
+    const DamagedRead read = read_damaged(folder, cut_at(whole, percent));
+    EXPECT_GE(read.events.size(), before) << percent << " %: " << read.refusal;
+    before = read.events.size();
   }
   EXPECT_GT(before, 290'000u);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Converts measurements to messages.
-#include "edged/io/ros/ros_writer.hpp"
+#include "edged/io/ros/ros.hpp"
 
 #include <algorithm>
 #include <map>
@@ -9,10 +9,9 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/bag/bag_writer.hpp"
-#include "edged/io/ros/bag/mcap_sink.hpp"
-#include "edged/io/ros/messages/definitions.hpp"
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/bag/mcap.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 
 namespace edged {
 namespace {
@@ -116,11 +115,11 @@ class RosWriter final : public RecordingWriter {
 }  // namespace
 
 std::unique_ptr<RecordingWriter> write_ros1_bag(const WriterSetup& setup) {
-  return std::make_unique<RosWriter>(setup, std::make_unique<BagWriter>(setup.path));
+  return std::make_unique<RosWriter>(setup, create_ros1_bag(setup.path));
 }
 
 std::unique_ptr<RecordingWriter> write_mcap(const WriterSetup& setup) {
-  return std::make_unique<RosWriter>(setup, std::make_unique<McapSink>(setup.path));
+  return std::make_unique<RosWriter>(setup, std::make_unique<McapWriter>(setup.path, "ros2"));
 }
 
 }  // namespace edged

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Written bags: their content besides the measurements, and their check by the tools of ROS.
-#include "edged/io/ros/ros_writer.hpp"
+#include "edged/io/ros/ros.hpp"
 
 #include <gmock/gmock.h>
 

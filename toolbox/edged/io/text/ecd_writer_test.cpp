@@ -71,7 +71,7 @@ TEST(EcdWriter, RefusesWhatTheFormatCannotHold) {
   EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "a"); }),
               HasSubstr("a calibration with extrinsics"));
   source.truth.reset();
-  source.measurements.push_back(EventBatch{"right", {Event{}}});
+  source.measurements.emplace_back(EventBatch{"right", {Event{}}});
   EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "b"); }), HasSubstr("not both left and right"));
   folder.write("c/imu.txt", "");
   EXPECT_THAT(input_error([&] { copy_as_ecd(source, folder.path() / "c"); }), HasSubstr("holds a recording already"));

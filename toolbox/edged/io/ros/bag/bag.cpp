@@ -1,21 +1,35 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The records of a bag.
-#include "edged/io/ros/bag/bag.hpp"
-
+// ROS 1 bags of version 2.0: the records, a header of `name=value` fields and data, each after its length.
 #include <spdlog/fmt/fmt.h>
 
-#include "edged/io/archive/compression.hpp"
-#include "edged/io/ros/bag/bag_format.hpp"
+#include <algorithm>
+#include <map>
+
+#include "edged/io/ros/bag/message_records.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
+namespace {
 
-/// A field `name=value` of the header of a record.
+enum BagOp : std::uint8_t {
+  kBagMessage = 2,
+  kBagHeader = 3,
+  kBagIndex = 4,
+  kBagChunk = 5,
+  kBagChunkInfo = 6,
+  kBagConnection = 7
+};
+
+constexpr std::uint32_t kLongestHeader = 1U << 20U;  // longer ones are damage
+constexpr std::size_t kBagHeadBytes = 4096;          // of the first record, padded
+
+/// The fields of the header of a record.
 class BagFields {
  public:
   explicit BagFields(ByteSpan bytes) {
     for (ByteReader reader(bytes); reader.left() > 0;) {
-      const std::string_view field = reader.text(reader.number<std::uint32_t>());
+      const std::string_view field = take_text(reader);
       const std::size_t equals = field.find('=');
       if (equals == std::string_view::npos) throw Damage("field without `=`");
       fields_[field.substr(0, equals)] = field.substr(equals + 1);
@@ -42,112 +56,209 @@ class BagFields {
   std::map<std::string_view, std::string_view> fields_;
 };
 
-namespace {
+std::uint64_t bag_time(Timestamp t) {
+  // For tools, the time zero means that it is not set.
+  const auto ns = static_cast<std::uint64_t>(std::max<std::int64_t>(to_ns(t), 1));
+  return ns / 1'000'000'000 | (ns % 1'000'000'000) << 32U;
+}
 
-constexpr std::uint64_t kFirstRecord = kBagMagic.size();
-constexpr std::uint32_t kLongestHeader = 1U << 20U;  // longer ones are damage
-constexpr std::uint32_t kLargestChunk = 1U << 30U;   // uncompressed; 768 kB are usual
+/// Writes the fields that BagFields reads.
+class BagHeader {
+ public:
+  BagHeader() = default;
+  explicit BagHeader(BagOp op) { number("op", static_cast<std::uint8_t>(op)); }
 
-/// The position of a record in the file. Its data may extend beyond the end of a cut file.
-struct BagRecord {
-  Bytes header;
-  std::uint64_t data = 0;
-  std::uint32_t size = 0;
-  std::uint64_t end() const { return data + size; }
+  template <typename T>
+  BagHeader& number(std::string_view name, T value) {
+    std::string bytes;
+    append_number(bytes, value);
+    return text(name, bytes);
+  }
+  BagHeader& text(std::string_view name, std::string_view value) {
+    append_sized(fields_, std::string(name).append("=").append(value));
+    return *this;
+  }
+  const std::string& bytes() const { return fields_; }
+
+ private:
+  std::string fields_;
 };
 
-BagRecord locate_record(BinaryFile& file, std::uint64_t at) {
-  const Bytes length = file.read(at, 4);
-  const auto header_size = ByteReader(length).number<std::uint32_t>();
-  if (header_size > kLongestHeader) throw Damage("header of a record too long");
-  BagRecord record{file.read(at + 4, header_size + 4), at + 8 + header_size, 0};
-  ByteReader reader(record.header);
-  reader.take(header_size);
-  record.size = reader.number<std::uint32_t>();
-  record.header.resize(header_size);
+std::string bag_record(const BagHeader& header, std::string_view data) {
+  std::string record;
+  append_sized(record, header.bytes());
+  append_sized(record, data);
   return record;
 }
 
+/// A record has a header with named fields, and data.
+class Bag final : public RecordSource {
+ public:
+  Bag(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kBagMagic.size(), repairs) {
+    find_topics();
+  }
+
+  Wire wire() const override { return Wire::Ros1; }
+
+ private:
+  void forget() override { topic_of_connection_.clear(); }
+
+  RecordPlace locate(std::uint64_t at) override {
+    const Bytes length = file().read(at, 4);
+    const auto header_bytes = ByteReader(length).number<std::uint32_t>();
+    if (header_bytes > kLongestHeader) throw Damage("header of a record too long");
+    const Bytes head = file().read(at + 4, header_bytes + 4);
+    ByteReader reader(head);
+    const auto op = BagFields(reader.take(header_bytes)).number<std::uint8_t>("op");
+    RecordPlace place{at, at + 8 + header_bytes, reader.number<std::uint32_t>(), kSkipped};
+    if (op == kBagChunk) place.kind = kChunk;
+    if (op == kBagMessage || op == kBagConnection) place.kind = kPlain;
+    if (place.kind != kSkipped && place.bytes > kLargestRecord) throw Damage("record too long");
+    return place;
+  }
+
+  void read_index() override {
+    const RecordPlace head = locate(first_record());
+    const Bytes record = bytes_of(head);
+    ByteReader reader(record);
+    const auto place = BagFields(take_sized(reader)).number<std::uint64_t>("index_pos");
+    if (place < head.end()) throw Damage("unfinished");
+    read_index_at(place, file().size());
+  }
+
+  std::optional<Message> take_record(ByteReader& records) override {
+    const BagFields header(take_sized(records));
+    const ByteSpan data = take_sized(records);
+    const auto op = header.number<std::uint8_t>("op");
+    if (op == kBagConnection) take_connection(header, data);
+    if (op == kBagChunkInfo) take_chunk_info(header, data);
+    if (op != kBagMessage) return std::nullopt;
+    const auto connection = topic_of_connection_.find(header.number<std::uint32_t>("conn"));
+    if (connection == topic_of_connection_.end()) throw Damage("message of an unknown connection");
+    extend(header.time("time"));
+    return Message{connection->second, data};
+  }
+
+  PackedChunk open_chunk(ByteReader record) override {
+    const BagFields header(take_sized(record));
+    const auto packed = record.number<std::uint32_t>();
+    return {header.text("compression"), header.number<std::uint32_t>("size"),
+            record.take(std::min<std::size_t>(packed, record.left()))};
+  }
+
+  void take_connection(const BagFields& header, ByteSpan data) {
+    const auto id = header.number<std::uint32_t>("conn");
+    if (topic_of_connection_.contains(id)) return;
+    const BagFields fields(data);
+    topic_of_connection_[id] =
+        describe_topic(header.text("topic"), fields.text("type"), fields.text("message_definition"));
+  }
+
+  /// The position of a chunk, its time span, and its number of messages of each connection.
+  void take_chunk_info(const BagFields& header, ByteSpan data) {
+    extend(header.time("start_time"));
+    extend(header.time("end_time"));
+    std::vector<std::size_t> topics;
+    ByteReader counts(data);
+    for (auto left = header.number<std::uint32_t>("count"); left > 0; --left) {
+      const auto connection = topic_of_connection_.find(counts.number<std::uint32_t>());
+      if (connection == topic_of_connection_.end()) throw Damage("unknown connection");
+      count_messages(connection->second, counts.number<std::uint32_t>());
+      topics.push_back(connection->second);
+    }
+    index_[header.number<std::uint64_t>("chunk_pos")] = std::move(topics);
+  }
+
+  std::map<std::uint32_t, std::size_t> topic_of_connection_;
+};
+
+/// Writes the index that ROS tools require.
+class BagWriter final : public RecordWriter {
+ public:
+  BagWriter(const std::filesystem::path& file, const ChunkOptions& options) : RecordWriter(file, options) {
+    file_.write(kBagMagic);
+    file_.write(head(0));
+  }
+
+  Wire wire() const override { return Wire::Ros1; }
+
+  std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) override {
+    const std::size_t id = topics_.size();
+    const BagHeader header =
+        BagHeader(kBagConnection).number("conn", static_cast<std::uint32_t>(id)).text("topic", name);
+    const BagHeader data = BagHeader()
+                               .text("topic", name)
+                               .text("type", type)
+                               .text("md5sum", definition.md5)
+                               .text("message_definition", definition.text);
+    topics_.push_back({"", bag_record(header, data.bytes())});
+    return id;
+  }
+
+ private:
+  /// The first record. index_place: 0 while the bag is unfinished, which states that there is no index.
+  std::string head(std::uint64_t index_place) const {
+    const BagHeader header = BagHeader(kBagHeader)
+                                 .number("index_pos", index_place)
+                                 .number("conn_count", static_cast<std::uint32_t>(topics_.size()))
+                                 .number("chunk_count", static_cast<std::uint32_t>(chunks_.size()));
+    return bag_record(header, std::string(kBagHeadBytes - 8 - header.bytes().size(), ' '));
+  }
+
+  std::string message_record(std::size_t topic, Timestamp t, std::string_view message) const override {
+    return bag_record(
+        BagHeader(kBagMessage).number("conn", static_cast<std::uint32_t>(topic)).number("time", bag_time(t)), message);
+  }
+
+  std::string chunk_record(const ChunkInfo& chunk, std::string_view packed) const override {
+    return bag_record(BagHeader(kBagChunk)
+                          .text("compression", options_.compression)
+                          .number("size", static_cast<std::uint32_t>(chunk.unpacked)),
+                      packed);
+  }
+
+  std::string index_record(std::size_t topic, const std::vector<IndexEntry>& entries) const override {
+    std::string data;
+    for (const IndexEntry& entry : entries) {
+      append_number(data, bag_time(entry.t));
+      append_number(data, static_cast<std::uint32_t>(entry.offset));
+    }
+    return bag_record(BagHeader(kBagIndex)
+                          .number("ver", std::uint32_t{1})
+                          .number("conn", static_cast<std::uint32_t>(topic))
+                          .number("count", static_cast<std::uint32_t>(entries.size())),
+                      data);
+  }
+
+  void write_summary() override {
+    const std::uint64_t index_place = file_.size();
+    for (const TopicRecords& topic : topics_) file_.write(topic.channel);
+    for (const ChunkInfo& chunk : chunks_) {
+      const BagHeader header = BagHeader(kBagChunkInfo)
+                                   .number("ver", std::uint32_t{1})
+                                   .number("chunk_pos", chunk.place)
+                                   .number("start_time", bag_time(chunk.begin))
+                                   .number("end_time", bag_time(chunk.end))
+                                   .number("count", static_cast<std::uint32_t>(chunk.topics.size()));
+      std::string data;
+      for (const auto& [topic, index] : chunk.topics) {
+        append_number(data, static_cast<std::uint32_t>(topic));
+        append_number(data, static_cast<std::uint32_t>(index.messages));
+      }
+      file_.write(bag_record(header, data));
+    }
+    file_.overwrite(kBagMagic.size(), head(index_place));
+  }
+};
+
 }  // namespace
 
-Bag::Bag(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kFirstRecord, repairs) {
-  find_topics();
+std::unique_ptr<MessageSource> open_ros1_bag(const std::filesystem::path& file, Repairs* repairs) {
+  return std::make_unique<Bag>(file, repairs);
 }
 
-void Bag::read_index() {
-  const BagRecord head = locate_record(file(), kFirstRecord);
-  std::uint64_t place = BagFields(head.header).number<std::uint64_t>("index_pos");
-  if (place < head.end() || place >= file().size()) throw Damage("unfinished");
-  while (place < file().size()) {
-    const BagRecord record = locate_record(file(), place);
-    if (record.end() > file().size() || record.size > kLargestChunk) throw Damage("index cut");
-    const BagFields fields(record.header);
-    const Bytes data = file().read(record.data, record.size);
-    const auto op = fields.number<std::uint8_t>("op");
-    if (op == kBagConnection) add_connection(fields, data);
-    if (op == kBagChunkInfo) add_chunk_info(fields, data);
-    place = record.end();
-  }
-}
-
-/// Loads the records of a chunk, or a record outside chunks, for reading.
-bool Bag::load_record() {
-  const std::uint64_t begin = at();
-  const BagRecord record = locate_record(file(), begin);
-  const BagFields fields(record.header);
-  const auto op = fields.number<std::uint8_t>("op");
-  go_to(record.end());
-  if (op != kBagChunk && op != kBagMessage && op != kBagConnection) return false;
-  if (op == kBagChunk && !is_of_use(begin)) return false;
-  if (record.size > kLargestChunk) throw Damage("record too long");
-  const bool cut = record.end() > file().size();
-  if (cut) repair("cut", "the file ends within a record");
-  if (op != kBagChunk) {
-    load(file().read(begin, static_cast<std::size_t>(record.end() - begin)));
-    return true;
-  }
-  const auto size = fields.number<std::uint32_t>("size");
-  if (size > kLargestChunk) throw Damage("chunk too long");
-  Decompressed chunk = decompress(fields.text("compression"), file().read(record.data, record.size), size);
-  if ((!chunk.whole || chunk.bytes.size() != size) && !cut)
-    repair("chunk damaged", fmt::format("chunk at byte {} is not whole", begin));
-  load(std::move(chunk.bytes));
-  return true;
-}
-
-std::optional<Message> Bag::take_message() {
-  const BagFields fields(reader().take(reader().number<std::uint32_t>()));
-  const ByteSpan data = reader().take(reader().number<std::uint32_t>());
-  const auto op = fields.number<std::uint8_t>("op");
-  if (op == kBagConnection) add_connection(fields, data);
-  if (op != kBagMessage) return std::nullopt;
-  const auto connection = topic_of_connection_.find(fields.number<std::uint32_t>("conn"));
-  if (connection == topic_of_connection_.end()) throw Damage("message of an unknown connection");
-  extend(fields.time("time"));
-  return Message{connection->second, data};
-}
-
-void Bag::add_connection(const BagFields& header, ByteSpan data) {
-  const auto id = header.number<std::uint32_t>("conn");
-  if (topic_of_connection_.contains(id)) return;
-  const BagFields fields(data);
-  topic_of_connection_[id] =
-      describe_topic(header.text("topic"), fields.text("type"), fields.text("message_definition"));
-}
-
-/// The position of a chunk, its time span, and its number of messages of each connection.
-void Bag::add_chunk_info(const BagFields& header, ByteSpan data) {
-  extend(header.time("start_time"));
-  extend(header.time("end_time"));
-  std::vector<std::size_t> topics;
-  ByteReader counts(data);
-  for (auto left = header.number<std::uint32_t>("count"); left > 0; --left) {
-    const auto connection = topic_of_connection_.find(counts.number<std::uint32_t>());
-    if (connection == topic_of_connection_.end()) throw Damage("unknown connection");
-    count_messages(connection->second, counts.number<std::uint32_t>());
-    topics.push_back(connection->second);
-  }
-  add_chunk(header.number<std::uint64_t>("chunk_pos"), std::move(topics));
+std::unique_ptr<MessageSink> create_ros1_bag(const std::filesystem::path& file, const ChunkOptions& options) {
+  return std::make_unique<BagWriter>(file, options);
 }
 
 }  // namespace edged

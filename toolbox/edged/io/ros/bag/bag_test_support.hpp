@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "edged/io/archive/compression.hpp"
-#include "edged/io/ros/bag/bag_writer.hpp"
-#include "edged/io/ros/bag/mcap_sink.hpp"
-#include "edged/io/ros/messages/wire_writer.hpp"
+#include "edged/io/ros/bag/mcap.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
+#include "edged/io/ros/messages/messages.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {
@@ -37,9 +37,7 @@ class Db3Writer final : public MessageSink {
 
   Wire wire() const override { return Wire::Cdr; }
   std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition&) override {
-    std::string long_type(type);
-    long_type.insert(long_type.find('/'), "/msg");
-    run(fmt::format("INSERT INTO topics VALUES({}, '{}', '{}', 'cdr', '')", ++topics_, name, long_type));
+    run(fmt::format("INSERT INTO topics VALUES({}, '{}', '{}', 'cdr', '')", ++topics_, name, ros2_type(type)));
     return topics_;
   }
   void write(std::size_t topic, Timestamp t, std::string_view message) override {
@@ -72,20 +70,24 @@ struct BagContainer {
 
 inline constexpr std::size_t kSmallChunk = 4096;  // so that a small bag has several
 
-template <typename Writer>
-std::unique_ptr<MessageSink> make_chunked(const std::filesystem::path& file, std::string_view compression) {
-  return std::make_unique<Writer>(file, ChunkOptions{compression, kSmallChunk});
+inline std::unique_ptr<MessageSink> make_bag(const std::filesystem::path& file, std::string_view compression) {
+  return create_ros1_bag(file, {compression, kSmallChunk});
+}
+inline std::unique_ptr<MessageSink> make_mcap(const std::filesystem::path& file, std::string_view compression) {
+  return std::make_unique<McapWriter>(file, "ros2", ChunkOptions{compression, kSmallChunk});
+}
+inline std::unique_ptr<MessageSink> make_db3(const std::filesystem::path& file, std::string_view compression) {
+  return std::make_unique<Db3Writer>(file, compression);
 }
 
 inline const BagContainer kBagContainers[] = {
-    {"ros1", ".bag", [](const auto& file) { return make_chunked<BagWriter>(file, "none"); }},
-    {"ros1_lz4", ".bag", [](const auto& file) { return make_chunked<BagWriter>(file, "lz4"); }},
-    {"mcap", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, ""); }},
-    {"mcap_lz4", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, "lz4"); }},
-    {"mcap_zstd", ".mcap", [](const auto& file) { return make_chunked<McapSink>(file, "zstd"); }},
-    {"db3", ".db3", [](const auto& file) -> std::unique_ptr<MessageSink> { return std::make_unique<Db3Writer>(file); }},
-    {"db3_zstd_messages", ".db3",
-     [](const auto& file) -> std::unique_ptr<MessageSink> { return std::make_unique<Db3Writer>(file, "zstd"); }},
+    {"ros1", ".bag", [](const auto& file) { return make_bag(file, "none"); }},
+    {"ros1_lz4", ".bag", [](const auto& file) { return make_bag(file, "lz4"); }},
+    {"mcap", ".mcap", [](const auto& file) { return make_mcap(file, ""); }},
+    {"mcap_lz4", ".mcap", [](const auto& file) { return make_mcap(file, "lz4"); }},
+    {"mcap_zstd", ".mcap", [](const auto& file) { return make_mcap(file, "zstd"); }},
+    {"db3", ".db3", [](const auto& file) { return make_db3(file, "none"); }},
+    {"db3_zstd_messages", ".db3", [](const auto& file) { return make_db3(file, "zstd"); }},
 };
 
 inline const cv::Size kBagSensor(346, 260);

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The tables of a ROS 2 bag.
-#include "edged/io/ros/bag/db3.hpp"
-
+// ROS 2 bags in SQLite files: the tables.
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <map>
 
 #include "edged/core/check.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
 namespace {
@@ -32,71 +32,97 @@ bool is_cut(const std::filesystem::path& file) {
   return page_count_valid && big_endian(28, 4) * page_bytes > bytes.size();
 }
 
+class Db3 final : public MessageSource {
+ public:
+  Db3(const std::filesystem::path& file, Repairs* repairs) : name_(file.string()), repairs_(repairs) {
+    // Immutable: also opens a recording in a read-only folder, and does not change its journal.
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(file).string())
+      uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", c) : std::string(1, c);
+    sqlite3* opened = nullptr;
+    const int result =
+        sqlite3_open_v2((uri + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+    database_.reset(opened);
+    if (result != SQLITE_OK) throw InputError::format("{}: cannot be opened as SQLite file", name_);
+    if (repairs_ && is_cut(file))
+      repairs_->add("bag: cut", name_ + ": the file ends before its last page: messages there may be damaged");
+
+    const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+    while (step(topics.get())) {
+      if (column_text(topics.get(), 3) != "cdr") continue;
+      const std::string name(column_text(topics.get(), 1));
+      topic_of_id_[sqlite3_column_int64(topics.get(), 0)] = topic_index(topics_, name, column_text(topics.get(), 2));
+    }
+    const Statement counts =
+        prepare("SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages GROUP BY topic_id");
+    std::int64_t first = INT64_MAX, last = 0;
+    while (step(counts.get())) {
+      const auto topic = topic_of_id_.find(sqlite3_column_int64(counts.get(), 0));
+      if (topic == topic_of_id_.end()) continue;
+      topics_[topic->second].count += static_cast<std::size_t>(sqlite3_column_int64(counts.get(), 1));
+      first = std::min(first, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 2), 0));
+      last = std::max(last, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 3), 0));
+    }
+    if (topics_.empty()) throw InputError::format("{}: no topics in this bag: record it again", name_);
+    if (last > first) length_ = Duration(last - first);
+    messages_ = prepare("SELECT topic_id, data FROM messages ORDER BY id");
+  }
+
+  Wire wire() const override { return Wire::Cdr; }
+  const std::vector<Topic>& topics() const override { return topics_; }
+  Duration length() const override { return length_; }
+
+  std::optional<Message> read(std::optional<std::size_t> only) override {
+    while (step(messages_.get())) {
+      const auto topic = topic_of_id_.find(sqlite3_column_int64(messages_.get(), 0));
+      if (topic == topic_of_id_.end() || (only && topic->second != *only)) continue;
+      const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(messages_.get(), 1));
+      const auto size = static_cast<std::size_t>(sqlite3_column_bytes(messages_.get(), 1));
+      if (data) return Message{topic->second, ByteSpan(data, size)};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close(database); }
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+
+  Statement prepare(const char* query) {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(database_.get(), query, -1, &statement, nullptr) != SQLITE_OK)
+      throw InputError::format("{}: no ROS 2 bag, or damaged ({})", name_, sqlite3_errmsg(database_.get()));
+    return Statement(statement);
+  }
+
+  /// False at the end, or after damage, which is counted.
+  bool step(sqlite3_stmt* statement) {
+    if (!statement) return false;
+    const int result = sqlite3_step(statement);
+    if (result == SQLITE_ROW) return true;
+    if (result != SQLITE_DONE) {
+      if (repairs_)
+        repairs_->add("bag: database damaged", fmt::format("{}: {}", name_, sqlite3_errmsg(database_.get())));
+      if (statement == messages_.get()) messages_.reset();
+    }
+    return false;
+  }
+
+  std::string name_;
+  Repairs* repairs_;
+  std::unique_ptr<sqlite3, Close> database_;
+  std::vector<Topic> topics_;
+  std::map<std::int64_t, std::size_t> topic_of_id_;
+  Duration length_{0};
+  Statement messages_;
+};
+
 }  // namespace
 
-void Db3::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
-void Db3::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-
-Db3::Db3(const std::filesystem::path& file, Repairs* repairs) : name_(file.string()), repairs_(repairs) {
-  // Immutable: also opens a recording in a read-only folder, and does not change its journal.
-  std::string uri = "file:";
-  for (const char c : std::filesystem::absolute(file).string())
-    uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", c) : std::string(1, c);
-  sqlite3* opened = nullptr;
-  const int result =
-      sqlite3_open_v2((uri + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
-  database_.reset(opened);
-  if (result != SQLITE_OK) throw InputError::format("{}: cannot be opened as SQLite file", name_);
-  if (repairs_ && is_cut(file))
-    repairs_->add("bag: cut", name_ + ": the file ends before its last page: messages there may be damaged");
-
-  const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
-  while (step(topics.get())) {
-    if (column_text(topics.get(), 3) != "cdr") continue;
-    const std::string name(column_text(topics.get(), 1));
-    topic_of_id_[sqlite3_column_int64(topics.get(), 0)] = topic_index(topics_, name, column_text(topics.get(), 2));
-  }
-  const Statement counts =
-      prepare("SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages GROUP BY topic_id");
-  std::int64_t first = INT64_MAX, last = 0;
-  while (step(counts.get())) {
-    const auto topic = topic_of_id_.find(sqlite3_column_int64(counts.get(), 0));
-    if (topic == topic_of_id_.end()) continue;
-    topics_[topic->second].count += static_cast<std::size_t>(sqlite3_column_int64(counts.get(), 1));
-    first = std::min(first, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 2), 0));
-    last = std::max(last, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 3), 0));
-  }
-  if (topics_.empty()) throw InputError::format("{}: no topics in this bag: record it again", name_);
-  if (last > first) length_ = Duration(last - first);
-  messages_ = prepare("SELECT topic_id, data FROM messages ORDER BY id");
-}
-
-std::optional<Message> Db3::next() {
-  while (step(messages_.get())) {
-    const auto topic = topic_of_id_.find(sqlite3_column_int64(messages_.get(), 0));
-    const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(messages_.get(), 1));
-    const auto size = static_cast<std::size_t>(sqlite3_column_bytes(messages_.get(), 1));
-    if (topic != topic_of_id_.end() && data) return Message{topic->second, ByteSpan(data, size)};
-  }
-  return std::nullopt;
-}
-
-Db3::Statement Db3::prepare(const char* query) {
-  sqlite3_stmt* statement = nullptr;
-  if (sqlite3_prepare_v2(database_.get(), query, -1, &statement, nullptr) != SQLITE_OK)
-    throw InputError::format("{}: no ROS 2 bag, or damaged ({})", name_, sqlite3_errmsg(database_.get()));
-  return Statement(statement);
-}
-
-bool Db3::step(sqlite3_stmt* statement) {
-  if (!statement) return false;
-  const int result = sqlite3_step(statement);
-  if (result == SQLITE_ROW) return true;
-  if (result != SQLITE_DONE) {
-    if (repairs_) repairs_->add("bag: database damaged", fmt::format("{}: {}", name_, sqlite3_errmsg(database_.get())));
-    if (statement == messages_.get()) messages_.reset();
-  }
-  return false;
+std::unique_ptr<MessageSource> open_db3(const std::filesystem::path& file, Repairs* repairs) {
+  return std::make_unique<Db3>(file, repairs);
 }
 
 }  // namespace edged

@@ -1,163 +1,291 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads the records of an MCAP file.
+// The records of an MCAP file, with a summary as index.
 #include "edged/io/ros/bag/mcap.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 
-#include "edged/io/archive/compression.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/bag/mcap_format.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
 namespace {
 
-constexpr std::uint64_t kMagicBytes = kMcapMagic.size();
-constexpr std::uint64_t kRecordHead = 9;             // opcode and length
-constexpr std::uint64_t kLargestRecord = 1U << 30U;  // longer ones are damage
+enum McapOp : std::uint8_t {
+  kMcapHeader = 1,
+  kMcapFooter = 2,
+  kMcapSchema = 3,
+  kMcapChannel = 4,
+  kMcapMessage = 5,
+  kMcapChunk = 6,
+  kMcapMessageIndex = 7,
+  kMcapChunkIndex = 8,
+  kMcapStatistics = 0x0B,
+  kMcapMetadata = 0x0C,
+  kMcapMetadataIndex = 0x0D,
+  kMcapDataEnd = 0x0F
+};
 
-std::string_view mcap_text(ByteReader& reader) { return reader.text(reader.number<std::uint32_t>()); }
+constexpr std::uint64_t kMcapRecordHead = 9;  // opcode and length
 
-Timestamp mcap_time(ByteReader& reader) {
+Timestamp take_mcap_time(ByteReader& reader) {
   const auto ns = reader.number<std::uint64_t>();
   if (ns > static_cast<std::uint64_t>(kMaxStampNs)) throw Damage("stamp out of range");
   return timestamp_from_ns(static_cast<std::int64_t>(ns));
 }
 
-}  // namespace
+std::uint64_t mcap_time(Timestamp t) { return static_cast<std::uint64_t>(std::max<std::int64_t>(to_ns(t), 0)); }
 
-Mcap::Mcap(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kMagicBytes, repairs) {
-  find_topics();
+/// Appends numbers in the order of the fields of a record.
+template <typename... Numbers>
+void append_numbers(std::string& out, Numbers... numbers) {
+  (append_number(out, numbers), ...);
 }
 
-/// Schemas, channels and counts lie between the end of the data and the footer, which has a fixed size.
-void Mcap::read_index() {
-  constexpr std::uint64_t kFooterBytes = kRecordHead + 20;
-  if (file().size() < kFooterBytes + 2 * kMagicBytes) throw Damage("no footer");
-  const std::uint64_t end = file().size() - kMagicBytes - kFooterBytes;
-  const Bytes tail = file().read(end, kFooterBytes);
-  ByteReader footer(tail);
-  if (footer.number<std::uint8_t>() != kMcapFooter || footer.number<std::uint64_t>() != 20) throw Damage("no footer");
-  const auto begin = footer.number<std::uint64_t>();
-  if (begin < kMagicBytes || begin >= end || end - begin > kLargestRecord) throw Damage("no summary");
+std::string mcap_record(McapOp op, std::string_view content) {
+  std::string record;
+  append_numbers(record, static_cast<std::uint8_t>(op), std::uint64_t{content.size()});
+  record += content;
+  return record;
+}
 
-  bool counted = false;
-  const Bytes summary = file().read(begin, static_cast<std::size_t>(end - begin));
-  for (ByteReader records(summary); records.left() > 0;) {
+/// A record is an opcode, a length and its content. Topics that are not of ROS are listed by name only.
+class Mcap final : public RecordSource {
+ public:
+  Mcap(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kMcapMagic.size(), repairs) {
+    find_topics();
+  }
+
+  Wire wire() const override { return wire_; }
+
+ private:
+  RecordPlace locate(std::uint64_t at) override {
+    const Bytes head = file().read(at, kMcapRecordHead);
+    ByteReader fields(head);
+    const auto op = fields.number<std::uint8_t>();
+    RecordPlace place{at, at + kMcapRecordHead, fields.number<std::uint64_t>(), kSkipped};
+    if (op == kMcapDataEnd || op == kMcapFooter) {
+      place.bytes = file().size() - place.data;  // nothing but the summary follows
+      return place;
+    }
+    if (place.bytes > kLargestRecord) throw Damage("record too long");
+    if (op <= kMcapChunk) place.kind = op == kMcapChunk ? kChunk : kPlain;
+    return place;
+  }
+
+  /// Schemas, channels and counts lie between the end of the data and the footer, which has a fixed size.
+  void read_index() override {
+    constexpr std::uint64_t kFooterBytes = kMcapRecordHead + 20;
+    if (file().size() < kFooterBytes + 2 * kMcapMagic.size()) throw Damage("no footer");
+    const std::uint64_t end = file().size() - kMcapMagic.size() - kFooterBytes;
+    const Bytes tail = file().read(end, kFooterBytes);
+    ByteReader footer(tail);
+    if (footer.number<std::uint8_t>() != kMcapFooter || footer.number<std::uint64_t>() != 20) throw Damage("no footer");
+    read_index_at(footer.number<std::uint64_t>(), end);
+    if (!counted_) throw Damage("no counts");
+  }
+
+  void forget() override {
+    schemas_.clear();
+    topic_of_channel_.clear();
+  }
+
+  std::optional<Message> take_record(ByteReader& records) override {
     const auto op = records.number<std::uint8_t>();
     ByteReader record(records.take(records.number<std::uint64_t>()));
-    if (take_description(op, record)) continue;
-    if (op == kMcapStatistics) {
-      take_statistics(record);
-      counted = true;
-    } else if (op == kMcapChunkIndex) {
-      take_chunk_index(record);
+    if (op == kMcapSchema) take_schema(record);
+    if (op == kMcapChannel) take_channel(record);
+    if (op == kMcapStatistics) take_statistics(record);
+    if (op == kMcapChunkIndex) take_chunk_index(record);
+    return op == kMcapMessage ? take_message(record) : std::nullopt;
+  }
+
+  void take_schema(ByteReader& record) {
+    const auto id = record.number<std::uint16_t>();
+    const std::string_view type = take_text(record), encoding = take_text(record);
+    schemas_[id] = {std::string(type), encoding.starts_with("ros") ? std::string(take_text(record)) : ""};
+  }
+
+  void take_channel(ByteReader& record) {
+    const auto id = record.number<std::uint16_t>();
+    const auto schema = schemas_.find(record.number<std::uint16_t>());
+    const std::string_view topic = take_text(record), encoding = take_text(record);
+    if (schema == schemas_.end() || topic_of_channel_.contains(id)) return;
+    const auto& [type, definition] = schema->second;
+    if (encoding == "ros1") wire_ = Wire::Ros1;
+    const bool ros = encoding == "cdr" || encoding == "ros1";
+    topic_of_channel_[id] = describe_topic(topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
+  }
+
+  std::optional<Message> take_message(ByteReader& record) {
+    const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+    record.take(4);  // sequence
+    const Timestamp t = take_mcap_time(record);
+    record.take(8);                                               // time of publication
+    if (channel == topic_of_channel_.end()) return std::nullopt;  // of no known type
+    extend(t);
+    return Message{channel->second, record.take(record.left())};
+  }
+
+  void take_statistics(ByteReader& record) {
+    counted_ = true;
+    record.take(8 + 2 + 4 + 4 + 4 + 4);  // counts of messages, schemas, channels, attachments, metadata, chunks
+    extend(take_mcap_time(record));
+    extend(take_mcap_time(record));
+    for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
+      const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+      const auto count = record.number<std::uint64_t>();
+      if (channel != topic_of_channel_.end()) count_messages(channel->second, count);
     }
   }
-  if (!counted) throw Damage("no counts");
-}
 
-void Mcap::take_statistics(ByteReader& record) {
-  record.take(8 + 2 + 4 + 4 + 4 + 4);  // counts of messages, schemas, channels, attachments, metadata, chunks
-  extend(mcap_time(record));
-  extend(mcap_time(record));
-  for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
-    const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-    const auto count = record.number<std::uint64_t>();
-    if (channel != topic_of_channel_.end()) count_messages(channel->second, count);
+  void take_chunk_index(ByteReader& record) {
+    record.take(8 + 8);  // first and last time
+    std::vector<std::size_t>& topics = index_[record.number<std::uint64_t>()];
+    record.take(8);  // length of the chunk
+    for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
+      const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+      record.take(8);                                                 // offset of its message index
+      if (channel == topic_of_channel_.end()) return topics.clear();  // the channel may be described later
+      topics.push_back(channel->second);
+    }
   }
-}
 
-void Mcap::take_chunk_index(ByteReader& record) {
-  record.take(8 + 8);  // first and last time
-  const auto place = record.number<std::uint64_t>();
-  record.take(8);  // length of the chunk
-  std::vector<std::size_t> topics;
-  for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
-    const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-    record.take(8);                                                       // offsets of its message indices
-    if (channel == topic_of_channel_.end()) return add_chunk(place, {});  // the channel may be described later
-    topics.push_back(channel->second);
+  PackedChunk open_chunk(ByteReader record) override {
+    record.take(kMcapRecordHead + 8 + 8);  // first and last time
+    const auto bytes = record.number<std::uint64_t>();
+    record.take(4);  // checksum: optional, and damage of a chunk is detected without it
+    const std::string_view method = take_text(record);
+    const auto packed = record.number<std::uint64_t>();
+    return {method, bytes, record.take(static_cast<std::size_t>(std::min<std::uint64_t>(packed, record.left())))};
   }
-  add_chunk(place, std::move(topics));
+
+  struct Schema {
+    std::string type, definition;
+  };
+  Wire wire_ = Wire::Cdr;
+  bool counted_ = false;  ///< the index holds statistics
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, std::size_t> topic_of_channel_;
+};
+
+}  // namespace
+
+std::unique_ptr<MessageSource> open_mcap(const std::filesystem::path& file, Repairs* repairs) {
+  return std::make_unique<Mcap>(file, repairs);
 }
 
-void Mcap::forget() {
-  schemas_.clear();
-  topic_of_channel_.clear();
+McapWriter::McapWriter(const std::filesystem::path& file, std::string_view profile, const ChunkOptions& options)
+    : RecordWriter(file, options) {
+  file_.write(kMcapMagic);
+  std::string header;
+  append_sized(header, profile);
+  append_sized(header, "edged");
+  file_.write(mcap_record(kMcapHeader, header));
 }
 
-/// Loads the records of a chunk, or a record outside chunks, for reading.
-bool Mcap::load_record() {
-  const std::uint64_t begin = at();
-  const Bytes head = file().read(begin, kRecordHead);
-  ByteReader fields(head);
-  const auto op = fields.number<std::uint8_t>();
-  const auto size = fields.number<std::uint64_t>();
-  if (op == kMcapDataEnd || op == kMcapFooter) {
-    go_to(file().size());
-    return false;
-  }
-  if (size > kLargestRecord) throw Damage("record too long");
-  go_to(begin + kRecordHead + size);
-  if (op > kMcapChunk || (op == kMcapChunk && !is_of_use(begin))) return false;
-  if (at() > file().size()) repair("cut", "the file ends within a record");
-  Bytes record = file().read(begin, static_cast<std::size_t>(kRecordHead + size));
-  if (op == kMcapChunk) {
-    load_chunk(ByteReader(ByteSpan(record).subspan(kRecordHead)));
-  } else {
-    load(std::move(record));
-  }
-  return true;
+std::size_t McapWriter::add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) {
+  const std::string long_type = ros2_type(type);
+  return add_topic({name, "cdr", long_type, "ros2msg", definition.text});
 }
 
-void Mcap::load_chunk(ByteReader chunk) {
-  chunk.take(8 + 8);  // first and last time
-  const auto unpacked_size = chunk.number<std::uint64_t>();
-  chunk.take(4);  // checksum: optional, and damage of a chunk is detected without it
-  const std::string_view method = mcap_text(chunk);
-  const auto packed_size = chunk.number<std::uint64_t>();
-  if (unpacked_size > kLargestRecord) throw Damage("chunk too long");
-  const auto there = static_cast<std::size_t>(std::min<std::uint64_t>(packed_size, chunk.left()));
-  Decompressed records = decompress(method, chunk.take(there), static_cast<std::size_t>(unpacked_size));
-  if ((!records.whole || records.bytes.size() != unpacked_size) && at() <= file().size())
-    repair("chunk damaged", fmt::format("chunk before byte {} is not whole", at()));
-  load(std::move(records.bytes));
+std::size_t McapWriter::add_topic(const McapTopic& topic) {
+  const auto id = static_cast<std::uint16_t>(topics_.size()), schema_id = static_cast<std::uint16_t>(id + 1);
+  std::string schema, channel;
+  append_number(schema, schema_id);  // zero: no schema
+  append_sized(schema, topic.type);
+  append_sized(schema, topic.type_encoding);
+  append_sized(schema, topic.type_text);
+  append_numbers(channel, id, schema_id);
+  append_sized(channel, topic.name);
+  append_sized(channel, topic.encoding);
+  append_number<std::uint32_t>(channel, 0);  // no further properties
+  topics_.push_back({mcap_record(kMcapSchema, schema), mcap_record(kMcapChannel, channel)});
+  return id;
 }
 
-std::optional<Message> Mcap::take_message() {
-  const auto op = reader().number<std::uint8_t>();
-  ByteReader record(reader().take(reader().number<std::uint64_t>()));
-  if (take_description(op, record) || op != kMcapMessage) return std::nullopt;
-  const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-  record.take(4);  // sequence
-  const Timestamp t = mcap_time(record);
-  record.take(8);                                               // time of publication
-  if (channel == topic_of_channel_.end()) return std::nullopt;  // of no known type
-  extend(t);
-  return Message{channel->second, record.take(record.left())};
+std::string McapWriter::message_record(std::size_t topic, Timestamp t, std::string_view message) const {
+  const std::uint64_t recorded = mcap_time(t), published = recorded;
+  std::string content;
+  append_numbers(content, static_cast<std::uint16_t>(topic), static_cast<std::uint32_t>(topics_[topic].messages),
+                 recorded, published);
+  content += message;
+  return mcap_record(kMcapMessage, content);
 }
 
-/// Schemas name types, channels topics; false for other records.
-bool Mcap::take_description(std::uint8_t op, ByteReader& record) {
-  if (op == kMcapSchema) {
-    const auto id = record.number<std::uint16_t>();
-    const std::string_view type = mcap_text(record), encoding = mcap_text(record);
-    schemas_[id] = {std::string(type), encoding.starts_with("ros") ? std::string(mcap_text(record)) : ""};
-    return true;
-  }
-  if (op != kMcapChannel) return false;
-  const auto id = record.number<std::uint16_t>();
-  const auto schema = schemas_.find(record.number<std::uint16_t>());
-  const std::string_view topic = mcap_text(record), encoding = mcap_text(record);
-  if (schema == schemas_.end() || topic_of_channel_.contains(id)) return true;
-  const auto& [type, definition] = schema->second;
-  if (encoding == "ros1") wire_ = Wire::Ros1;
-  const bool ros = encoding == "cdr" || encoding == "ros1";
-  topic_of_channel_[id] = describe_topic(topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
-  return true;
+std::string McapWriter::chunk_record(const ChunkInfo& chunk, std::string_view packed) const {
+  std::string content;
+  const std::uint32_t checksum = 0;  // none, as the compression has one
+  append_numbers(content, mcap_time(chunk.begin), mcap_time(chunk.end), chunk.unpacked, checksum);
+  append_sized(content, options_.compression);
+  append_number(content, chunk.packed);
+  content += packed;
+  return mcap_record(kMcapChunk, content);
+}
+
+std::string McapWriter::index_record(std::size_t topic, const std::vector<IndexEntry>& entries) const {
+  std::string content;
+  append_numbers(content, static_cast<std::uint16_t>(topic), static_cast<std::uint32_t>(16 * entries.size()));
+  for (const IndexEntry& entry : entries) append_numbers(content, mcap_time(entry.t), entry.offset);
+  return mcap_record(kMcapMessageIndex, content);
+}
+
+void McapWriter::write_metadata(std::string_view name, const std::map<std::string, std::string>& values) {
+  std::string pairs, content, index;
+  for (const auto& [key, value] : values) append_sized(pairs, key), append_sized(pairs, value);
+  append_sized(content, name);
+  append_sized(content, pairs);
+  const std::string record = mcap_record(kMcapMetadata, content);
+  append_numbers(index, file_.size(), std::uint64_t{record.size()});
+  append_sized(index, name);
+  metadata_index_.push_back(mcap_record(kMcapMetadataIndex, index));
+  file_.write(record);
+}
+
+std::string McapWriter::statistics() const {
+  const auto topics = static_cast<std::uint32_t>(topics_.size());
+  std::uint64_t messages = 0, begin = UINT64_MAX, end = 0;
+  for (const TopicRecords& topic : topics_) messages += topic.messages;
+  for (const ChunkInfo& chunk : chunks_)
+    begin = std::min(begin, mcap_time(chunk.begin)), end = std::max(end, mcap_time(chunk.end));
+  std::string content;
+  const std::uint32_t attachments = 0;
+  append_numbers(content, messages, static_cast<std::uint16_t>(topics), topics, attachments,
+                 static_cast<std::uint32_t>(metadata_index_.size()), static_cast<std::uint32_t>(chunks_.size()),
+                 chunks_.empty() ? 0 : begin, end, 10 * topics);
+  for (std::size_t i = 0; i < topics_.size(); ++i)
+    append_numbers(content, static_cast<std::uint16_t>(i), topics_[i].messages);
+  return mcap_record(kMcapStatistics, content);
+}
+
+std::string McapWriter::chunk_index(const ChunkInfo& chunk) const {
+  std::string content;
+  append_numbers(content, mcap_time(chunk.begin), mcap_time(chunk.end), chunk.place, chunk.bytes,
+                 static_cast<std::uint32_t>(10 * chunk.topics.size()));
+  for (const auto& [topic, index] : chunk.topics)
+    append_numbers(content, static_cast<std::uint16_t>(topic), index.place);
+  append_number(content, chunk.index_bytes);
+  append_sized(content, options_.compression);
+  append_numbers(content, chunk.packed, chunk.unpacked);
+  return mcap_record(kMcapChunkIndex, content);
+}
+
+void McapWriter::write_summary() {
+  constexpr std::uint32_t kNoChecksum = 0;
+  constexpr std::uint64_t kNoSummaryOffsets = 0;
+  std::string data_end, footer;
+  append_number(data_end, kNoChecksum);
+  file_.write(mcap_record(kMcapDataEnd, data_end));
+  append_numbers(footer, file_.size(), kNoSummaryOffsets, kNoChecksum);
+  for (const TopicRecords& topic : topics_) file_.write(topic.schema);
+  for (const TopicRecords& topic : topics_) file_.write(topic.channel);
+  file_.write(statistics());
+  for (const ChunkInfo& chunk : chunks_) file_.write(chunk_index(chunk));
+  for (const std::string& record : metadata_index_) file_.write(record);
+  file_.write(mcap_record(kMcapFooter, footer));
+  file_.write(kMcapMagic);
 }
 
 }  // namespace edged

@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The interface for reading the messages of a container: ROS 1 bag, SQLite or MCAP.
+// The interfaces for reading and writing the messages of a container: ROS 1 bag, SQLite (reading only) or MCAP.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edged/io/archive/bytes.hpp"
 #include "edged/io/core/topic_choice.hpp"
+#include "edged/io/ros/messages/definitions.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
-
-/// The serialization of a message.
-enum class Wire { Ros1, Cdr };
 
 struct Message {
   std::size_t topic = 0;  ///< index of topics()
@@ -32,13 +31,32 @@ class MessageSource {
   virtual Duration length() const = 0;
   /// Stamp of the first message by the clock of the recorder, if the container states it.
   virtual std::optional<Timestamp> begin_stamp() const { return std::nullopt; }
-  virtual std::optional<Message> next() = 0;
+  std::optional<Message> next() { return read(std::nullopt); }
   /// The next message of that topic. With an index, the messages before it are not read.
-  virtual std::optional<Message> next_of(std::size_t topic);
+  std::optional<Message> next_of(std::size_t topic) { return read(topic); }
+
+  /// The next message of any topic, or of one.
+  virtual std::optional<Message> read(std::optional<std::size_t> only) = 0;
+};
+
+/// Counterpart of MessageSource. Holds one chunk and the index in memory. An unfinished file is readable like one of a
+/// crashed recorder. All members throw InputError if the file cannot be written.
+class MessageSink {
+ public:
+  virtual ~MessageSink() = default;
+  virtual Wire wire() const = 0;
+  /// Adds a topic and returns its number, for write(). type: "pkg/Name".
+  virtual std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) = 0;
+  /// t: the time of recording.
+  virtual void write(std::size_t topic, Timestamp t, std::string_view message) = 0;
+  /// Completes the file with its index. Nothing may be written afterwards.
+  virtual void finish() = 0;
 };
 
 /// Index of the topic of that name and type, which is added if it is new. "pkg/msg/Name" becomes "pkg/Name".
 std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
                         std::string_view definition = {});
+/// The type in ROS 2: "pkg/msg/Name" of "pkg/Name".
+std::string ros2_type(std::string_view type);
 
 }  // namespace edged

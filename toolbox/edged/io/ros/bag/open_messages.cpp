@@ -1,22 +1,24 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Detects the container of a file.
+// Detects the container of each file, decompresses what the recorder compressed, and joins the files.
 #include "edged/io/ros/bag/open_messages.hpp"
 
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/io/ros/bag/bag.hpp"
-#include "edged/io/ros/bag/bag_folder.hpp"
-#include "edged/io/ros/bag/bag_format.hpp"
-#include "edged/io/ros/bag/db3.hpp"
-#include "edged/io/ros/bag/mcap.hpp"
-#include "edged/io/ros/bag/mcap_format.hpp"
-#include "edged/io/ros/bag/unpacked_source.hpp"
+#include "edged/io/archive/compression.hpp"
+#include "edged/io/ros/bag/bag_files.hpp"
+#include "edged/io/ros/ros.hpp"
 
 namespace edged {
+namespace fs = std::filesystem;
 namespace {
+
+constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";  // no message in CDR begins so
 
 enum class Container { None, Bag, Mcap, Db3, Zstd };
 
@@ -25,30 +27,118 @@ Container container_of(ByteSpan head) {
   if (magic.starts_with(kBagMagic)) return Container::Bag;
   if (magic.starts_with(kMcapMagic)) return Container::Mcap;
   if (magic.starts_with("SQLite format 3")) return Container::Db3;
-  if (magic.starts_with(kZstdMagic)) return Container::Zstd;
-  return Container::None;
+  return magic.starts_with(kZstdMagic) ? Container::Zstd : Container::None;
 }
 
-std::unique_ptr<MessageSource> open_container(const std::filesystem::path& file, Repairs* repairs) {
+/// A temporary folder, which the destructor removes with its content.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "edged_XXXXXX").string();
+    if (!::mkdtemp(pattern.data()))
+      throw InputError::format("{}: cannot be made, to unpack a bag there: set TMPDIR", pattern);
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::unique_ptr<MessageSource> open_container(const fs::path& file, Repairs* repairs);
+
+/// Decompresses a file into the folder of temporary files (TMPDIR) and opens it there. It is then unlinked, so it
+/// disappears with the source.
+std::unique_ptr<MessageSource> open_packed_file(const fs::path& file, Repairs* repairs) {
+  const ScratchFolder scratch;
+  const fs::path unpacked = scratch.path() / file.stem();
+  if (!decompress_zstd_file(file, unpacked) && repairs)
+    repairs->add("bag: cut", file.string() + ": the compressed file is not whole");
+  return open_container(unpacked, repairs);
+}
+
+std::unique_ptr<MessageSource> open_container(const fs::path& file, Repairs* repairs) {
   constexpr std::size_t kContainerHeadBytes = 16;
-  const auto unpacked = [&](std::unique_ptr<MessageSource> source) {
-    return std::make_unique<UnpackedSource>(std::move(source), file.string(), repairs);
-  };
   switch (container_of(BinaryFile(file).read(0, kContainerHeadBytes))) {
     case Container::Bag:
-      return std::make_unique<Bag>(file, repairs);
+      return open_ros1_bag(file, repairs);
     case Container::Mcap:
-      return unpacked(std::make_unique<Mcap>(file, repairs));
+      return open_mcap(file, repairs);
     case Container::Db3:
-      return unpacked(std::make_unique<Db3>(file, repairs));
+      return open_db3(file, repairs);
     case Container::Zstd:
-      return open_packed_messages(
-          file, [repairs](const std::filesystem::path& plain) { return open_container(plain, repairs); }, repairs);
+      return open_packed_file(file, repairs);
     case Container::None:
       break;
   }
   throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.string());
 }
+
+/// The messages of several files, one file after the other. Messages that are compressed one by one are decompressed.
+class BagMessages final : public MessageSource {
+ public:
+  explicit BagMessages(Repairs* repairs) : repairs_(repairs) {}
+
+  void add(const fs::path& file, std::unique_ptr<MessageSource> source) {
+    Part& part = parts_.emplace_back(file, std::move(source));
+    for (const Topic& topic : part.source->topics()) {
+      part.topics.push_back(topic_index(topics_, topic.name, topic.type, topic.definition));
+      topics_[part.topics.back()].count += topic.count;
+    }
+    length_ += part.source->length();
+  }
+
+  Wire wire() const override { return parts_.front().source->wire(); }
+  const std::vector<Topic>& topics() const override { return topics_; }
+  Duration length() const override { return length_; }
+  std::optional<Timestamp> begin_stamp() const override { return parts_.front().source->begin_stamp(); }
+
+  std::optional<Message> read(std::optional<std::size_t> only) override {
+    for (; current_ < parts_.size(); ++current_) {
+      const auto& [file, source, topics] = parts_[current_];
+      const auto own = only ? std::ranges::find(topics, *only) : topics.end();
+      if (only && own == topics.end()) continue;
+      const auto sought = only ? std::optional(static_cast<std::size_t>(own - topics.begin())) : std::nullopt;
+      while (const auto message = source->read(sought))
+        if (message->topic < topics.size())  // the index of a damaged file may lack topics that are found later
+          if (const auto data = plain(file, message->data)) return Message{topics[message->topic], *data};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Part {
+    Part(fs::path of, std::unique_ptr<MessageSource> opened) : file(std::move(of)), source(std::move(opened)) {}
+    fs::path file;
+    std::unique_ptr<MessageSource> source;
+    std::vector<std::size_t> topics;  ///< index of each of its topics among those of all parts
+  };
+
+  /// The data of a message. Nothing for a damaged one.
+  std::optional<ByteSpan> plain(const fs::path& file, ByteSpan data) {
+    constexpr std::size_t kLargestMessage = 1U << 28U;
+    if (!as_text(data).starts_with(kZstdMagic) || wire() != Wire::Cdr) return data;
+    Decompressed unpacked = decompress("zstd", data, kLargestMessage);
+    message_ = std::move(unpacked.bytes);
+    if (unpacked.whole) return message_;
+    if (repairs_) repairs_->add("bag: message damaged", file.string() + ": a compressed message is not whole");
+    return std::nullopt;
+  }
+
+  Repairs* repairs_;
+  std::vector<Part> parts_;
+  std::vector<Topic> topics_;
+  Duration length_{0};
+  std::size_t current_ = 0;
+  Bytes message_;  ///< decompressed
+};
 
 /// Files that have only the names of parts were recorded at other times.
 bool follows(const MessageSource& part, const MessageSource& before) {
@@ -60,28 +150,49 @@ bool follows(const MessageSource& part, const MessageSource& before) {
 
 }  // namespace
 
+std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
+                        std::string_view definition) {
+  std::string short_type(type);
+  if (const std::size_t at = short_type.find("/msg/"); at != std::string::npos) short_type.erase(at, 4);
+  const auto found =
+      std::ranges::find_if(topics, [&](const Topic& topic) { return topic.name == name && topic.type == short_type; });
+  if (found != topics.end()) return static_cast<std::size_t>(found - topics.begin());
+  topics.push_back({std::string(name), short_type, std::string(definition), 0});
+  return topics.size() - 1;
+}
+
+std::string ros2_type(std::string_view type) {
+  std::string long_type(type);
+  return long_type.insert(long_type.find('/'), "/msg");
+}
+
 bool is_bag(ByteSpan head) { return container_of(head) != Container::None; }
 
-bool is_bag_folder(const std::filesystem::path& folder) { return !bag_parts(folder).empty(); }
+bool is_bag_folder(const fs::path& folder) { return !bag_parts(folder).empty(); }
 
-std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs) {
-  const bool folder = std::filesystem::is_directory(path);
-  const std::vector<std::filesystem::path> files = folder ? bag_parts(path) : split_bag_parts(path);
-  if (!folder && files.size() == 1) return open_container(path, repairs);
+std::unique_ptr<MessageSource> open_messages(const fs::path& path, Repairs* repairs) {
+  const bool folder = fs::is_directory(path);
+  std::vector<fs::path> files = folder ? bag_parts(path) : split_bag_parts(path);
+  const std::vector<std::string> missing =
+      folder || files.size() > 1 ? missing_parts(files) : std::vector<std::string>();
   std::vector<std::unique_ptr<MessageSource>> parts;
-  const std::vector<std::string> missing = missing_parts(files);
-  for (const std::filesystem::path& file : files) {
+  for (const fs::path& file : files) {
     parts.push_back(open_container(file, repairs));
     if (folder || parts.size() == 1 || !missing.empty() || follows(*parts.back(), *parts[parts.size() - 2])) continue;
     if (repairs)
       spdlog::warn(
           fmt::format("{}: does not follow the part before it: {} is read alone", file.string(), path.string()));
-    return open_container(path, repairs);
+    parts.clear();
+    parts.push_back(open_container(path, repairs));
+    files = {path};
+    break;
   }
   if (!missing.empty() && repairs)
     repairs->add("bag: part missing",
                  fmt::format("{}: lacks {}; the others are read", path.string(), fmt::join(missing, ", ")));
-  return std::make_unique<BagFolder>(std::move(parts));
+  auto messages = std::make_unique<BagMessages>(repairs);
+  for (std::size_t i = 0; i < parts.size(); ++i) messages->add(files[i], std::move(parts[i]));
+  return messages;
 }
 
 }  // namespace edged

@@ -6,17 +6,26 @@
 #include <filesystem>
 #include <memory>
 
+#include "edged/io/archive/compression.hpp"
 #include "edged/io/parse/repairs.hpp"
 #include "edged/io/ros/bag/message_source.hpp"
 
 namespace edged {
 
-/// True for the first bytes of a bag, or of a bag that ROS 2 compressed as a whole.
-bool is_bag(ByteSpan head);
-/// True for the folder of a ROS 2 bag.
-bool is_bag_folder(const std::filesystem::path& folder);
-
-/// Opens a bag: a file or folder. Throws InputError if it is no bag. repairs may be null: then damage is not counted.
+/// Opens a bag: a file or folder. Throws InputError if it is no bag. repairs may be null, here and below: then damage
+/// is not counted.
 std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, Repairs* repairs);
+
+// The containers of one file. They throw InputError for a file without messages.
+
+inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";  // at both ends
+std::unique_ptr<MessageSource> open_ros1_bag(const std::filesystem::path& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_mcap(const std::filesystem::path& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_db3(const std::filesystem::path& file, Repairs* repairs);
+
+/// A new ROS 1 bag, whose chunks are compressed by "none" or "lz4". MCAP: McapWriter.
+std::unique_ptr<MessageSink> create_ros1_bag(const std::filesystem::path& file,
+                                             const ChunkOptions& options = {.compression = "lz4"});
 
 }  // namespace edged

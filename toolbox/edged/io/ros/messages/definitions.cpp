@@ -10,162 +10,83 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
-/// `TIME` is replaced by the type of stamps in ROS 1 or ROS 2.
 struct Fields {
   std::string_view type;
-  std::string_view md5;  ///< of types that are messages of a topic
-  std::string_view text;
+  std::string_view md5;  ///< only of types that are messages of a topic
+  /// Types, each with the names of its fields, separated by "; ". `HEADER` is the field std_msgs/Header header, `time`
+  /// the type of stamps.
+  std::string_view fields;
 };
-
-constexpr std::string_view kHeader1 = "uint32 seq\ntime stamp\nstring frame_id\n";
-constexpr std::string_view kHeader2 = "builtin_interfaces/Time stamp\nstring frame_id\n";
-
-constexpr std::string_view kEvent = "uint16 x\nuint16 y\nTIME ts\nbool polarity\n";
-constexpr std::string_view kCameraInfo =
-    "std_msgs/Header header\n"
-    "uint32 height\n"
-    "uint32 width\n"
-    "string distortion_model\n"
-    "float64[] D\n"
-    "float64[9] K\n"
-    "float64[9] R\n"
-    "float64[12] P\n"
-    "uint32 binning_x\n"
-    "uint32 binning_y\n"
-    "sensor_msgs/RegionOfInterest roi\n";
 
 constexpr std::array kFields = {
-    Fields{"builtin_interfaces/Time", "", "int32 sec\nuint32 nanosec\n"},
-    Fields{"geometry_msgs/Quaternion", "", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
-    Fields{"geometry_msgs/Vector3", "", "float64 x\nfloat64 y\nfloat64 z\n"},
-    Fields{"geometry_msgs/Transform", "",
-           "geometry_msgs/Vector3 translation\n"
-           "geometry_msgs/Quaternion rotation\n"},
+    Fields{"builtin_interfaces/Time", "", "int32 sec; uint32 nanosec"},
+    Fields{"geometry_msgs/Quaternion", "", "float64 x y z w"},
+    Fields{"geometry_msgs/Vector3", "", "float64 x y z"},
+    Fields{"geometry_msgs/Transform", "", "geometry_msgs/Vector3 translation; geometry_msgs/Quaternion rotation"},
     Fields{"geometry_msgs/TransformStamped", "b5764a33bfeb3588febc2682852579b0",
-           "std_msgs/Header header\n"
-           "string child_frame_id\n"
-           "geometry_msgs/Transform transform\n"},
-    Fields{"geometry_msgs/Point", "", "float64 x\nfloat64 y\nfloat64 z\n"},
-    Fields{"geometry_msgs/Pose", "",
-           "geometry_msgs/Point position\n"
-           "geometry_msgs/Quaternion orientation\n"},
-    Fields{"geometry_msgs/PoseStamped", "",
-           "std_msgs/Header header\n"
-           "geometry_msgs/Pose pose\n"},
-    Fields{"geometry_msgs/PoseWithCovariance", "",
-           "geometry_msgs/Pose pose\n"
-           "float64[36] covariance\n"},
+           "HEADER; string child_frame_id; geometry_msgs/Transform transform"},
+    Fields{"geometry_msgs/Point", "", "float64 x y z"},
+    Fields{"geometry_msgs/Pose", "", "geometry_msgs/Point position; geometry_msgs/Quaternion orientation"},
+    Fields{"geometry_msgs/PoseStamped", "", "HEADER; geometry_msgs/Pose pose"},
+    Fields{"geometry_msgs/PoseWithCovariance", "", "geometry_msgs/Pose pose; float64[36] covariance"},
     Fields{"geometry_msgs/PoseWithCovarianceStamped", "953b798c0f514ff060a53a3498ce6246",
-           "std_msgs/Header header\n"
-           "geometry_msgs/PoseWithCovariance pose\n"},
-    Fields{"geometry_msgs/Twist", "",
-           "geometry_msgs/Vector3 linear\n"
-           "geometry_msgs/Vector3 angular\n"},
-    Fields{"geometry_msgs/TwistWithCovariance", "",
-           "geometry_msgs/Twist twist\n"
-           "float64[36] covariance\n"},
+           "HEADER; geometry_msgs/PoseWithCovariance pose"},
+    Fields{"geometry_msgs/Twist", "", "geometry_msgs/Vector3 linear angular"},
+    Fields{"geometry_msgs/TwistWithCovariance", "", "geometry_msgs/Twist twist; float64[36] covariance"},
     Fields{"nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7",
-           "std_msgs/Header header\n"
-           "string child_frame_id\n"
-           "geometry_msgs/PoseWithCovariance pose\n"
-           "geometry_msgs/TwistWithCovariance twist\n"},
+           "HEADER; string child_frame_id; geometry_msgs/PoseWithCovariance pose; "
+           "geometry_msgs/TwistWithCovariance twist"},
     Fields{"nav_msgs/MapMetaData", "",
-           "TIME map_load_time\n"
-           "float32 resolution\n"
-           "uint32 width\n"
-           "uint32 height\n"
-           "geometry_msgs/Pose origin\n"},
+           "time map_load_time; float32 resolution; uint32 width height; geometry_msgs/Pose origin"},
     Fields{"nav_msgs/OccupancyGrid", "3381f2d731d4076ec5c71b0759edbe4e",
-           "std_msgs/Header header\n"
-           "nav_msgs/MapMetaData info\n"
-           "int8[] data\n"},
+           "HEADER; nav_msgs/MapMetaData info; int8[] data"},
     Fields{"octomap_msgs/Octomap", "9a45536b45c5e409cd49f04bb2d9999f",
-           "std_msgs/Header header\n"
-           "bool binary\n"
-           "string id\n"
-           "float64 resolution\n"
-           "int8[] data\n"},
-    Fields{"nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7",
-           "std_msgs/Header header\n"
-           "geometry_msgs/PoseStamped[] poses\n"},
-    Fields{"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec", "geometry_msgs/TransformStamped[] transforms\n"},
-    Fields{"diagnostic_msgs/KeyValue", "", "string key\nstring value\n"},
+           "HEADER; bool binary; string id; float64 resolution; int8[] data"},
+    Fields{"nav_msgs/Path", "6227e2b7e9cce15051f669a5e197bbf7", "HEADER; geometry_msgs/PoseStamped[] poses"},
+    Fields{"tf2_msgs/TFMessage", "94810edda583a504dfda3829e70d7eec", "geometry_msgs/TransformStamped[] transforms"},
+    Fields{"diagnostic_msgs/KeyValue", "", "string key value"},
     Fields{"diagnostic_msgs/DiagnosticStatus", "",
-           "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n"
-           "byte level\n"
-           "string name\n"
-           "string message\n"
-           "string hardware_id\n"
-           "diagnostic_msgs/KeyValue[] values\n"},
+           "byte OK=0 WARN=1 ERROR=2 STALE=3 level; string name message hardware_id; "
+           "diagnostic_msgs/KeyValue[] values"},
     Fields{"diagnostic_msgs/DiagnosticArray", "60810da900de1dd6ddd437c3503511da",
-           "std_msgs/Header header\n"
-           "diagnostic_msgs/DiagnosticStatus[] status\n"},
+           "HEADER; diagnostic_msgs/DiagnosticStatus[] status"},
     Fields{"sensor_msgs/PointField", "",
-           "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\n"
-           "uint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
-           "string name\n"
-           "uint32 offset\n"
-           "uint8 datatype\n"
-           "uint32 count\n"},
+           "uint8 INT8=1 UINT8=2 INT16=3 UINT16=4 INT32=5 UINT32=6 FLOAT32=7 FLOAT64=8; string name; uint32 offset; "
+           "uint8 datatype; uint32 count"},
     Fields{"sensor_msgs/PointCloud2", "1158d486dd51d683ce2f1be655c3c181",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "sensor_msgs/PointField[] fields\n"
-           "bool is_bigendian\n"
-           "uint32 point_step\n"
-           "uint32 row_step\n"
-           "uint8[] data\n"
-           "bool is_dense\n"},
-    Fields{"dvs_msgs/Event", "", kEvent},
+           "HEADER; uint32 height width; sensor_msgs/PointField[] fields; bool is_bigendian; "
+           "uint32 point_step row_step; uint8[] data; bool is_dense"},
+    Fields{"dvs_msgs/Event", "", "uint16 x y; time ts; bool polarity"},
     Fields{"dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "dvs_msgs/Event[] events\n"},
-    Fields{"prophesee_event_msgs/Event", "", kEvent},
+           "HEADER; uint32 height width; dvs_msgs/Event[] events"},
+    Fields{"prophesee_event_msgs/Event", "", "uint16 x y; time ts; bool polarity"},
     Fields{"prophesee_event_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "prophesee_event_msgs/Event[] events\n"},
+           "HEADER; uint32 height width; prophesee_event_msgs/Event[] events"},
     Fields{"event_camera_msgs/EventPacket", "8a6101b351a64529ac77bd8b71074e52",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "uint64 seq\n"
-           "uint64 time_base\n"
-           "string encoding\n"
-           "bool is_bigendian\n"
-           "uint8[] events\n"},
+           "HEADER; uint32 height width; uint64 seq time_base; string encoding; bool is_bigendian; uint8[] events"},
     Fields{"sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743",
-           "std_msgs/Header header\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "string encoding\n"
-           "uint8 is_bigendian\n"
-           "uint32 step\n"
-           "uint8[] data\n"},
+           "HEADER; uint32 height width; string encoding; uint8 is_bigendian; uint32 step; uint8[] data"},
     Fields{"sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2",
-           "std_msgs/Header header\n"
-           "geometry_msgs/Quaternion orientation\n"
-           "float64[9] orientation_covariance\n"
-           "geometry_msgs/Vector3 angular_velocity\n"
-           "float64[9] angular_velocity_covariance\n"
-           "geometry_msgs/Vector3 linear_acceleration\n"
-           "float64[9] linear_acceleration_covariance\n"},
-    Fields{"sensor_msgs/RegionOfInterest", "",
-           "uint32 x_offset\n"
-           "uint32 y_offset\n"
-           "uint32 height\n"
-           "uint32 width\n"
-           "bool do_rectify\n"},
-    Fields{"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214", kCameraInfo},
+           "HEADER; geometry_msgs/Quaternion orientation; float64[9] orientation_covariance; "
+           "geometry_msgs/Vector3 angular_velocity; float64[9] angular_velocity_covariance; "
+           "geometry_msgs/Vector3 linear_acceleration; float64[9] linear_acceleration_covariance"},
+    Fields{"sensor_msgs/RegionOfInterest", "", "uint32 x_offset y_offset height width; bool do_rectify"},
+    Fields{"sensor_msgs/CameraInfo", "c9a58c1b0b154e0e6da7578cb991d214",
+           "HEADER; uint32 height width; string distortion_model; float64[] D; float64[9] K R; float64[12] P; "
+           "uint32 binning_x binning_y; sensor_msgs/RegionOfInterest roi"},
 };
+
+/// The first word, which is removed from the text.
+std::string_view take_word(std::string_view& text) {
+  const std::string_view word = text.substr(0, text.find(' '));
+  text.remove_prefix(std::min(text.size(), word.size() + 1));
+  return word;
+}
 
 const Fields& fields_of(std::string_view type) {
   const auto* const found = std::ranges::find(kFields, type, &Fields::type);
@@ -173,14 +94,27 @@ const Fields& fields_of(std::string_view type) {
   return *found;
 }
 
+/// The definition: a line for each field.
 std::string text_of(std::string_view type, Wire wire) {
-  if (type == "std_msgs/Header") return std::string(wire == Wire::Ros1 ? kHeader1 : kHeader2);
-  std::string text(fields_of(type).text);
-  if (const std::size_t at = text.find("TIME "); at != std::string::npos)
-    text.replace(at, 4, wire == Wire::Ros1 ? "time" : "builtin_interfaces/Time");
-  if (type == "sensor_msgs/CameraInfo" && wire == Wire::Cdr)
-    for (std::size_t at = text.find("] "); at != std::string::npos; at = text.find("] ", at + 1))
-      text[at + 2] = static_cast<char>(text[at + 2] - 'A' + 'a');
+  std::string_view rest;
+  if (type == "std_msgs/Header") {
+    rest = wire == Wire::Ros1 ? "uint32 seq; time stamp; string frame_id" : "time stamp; string frame_id";
+  } else {
+    rest = fields_of(type).fields;
+  }
+  std::string text;
+  while (!rest.empty()) {
+    std::string_view names = rest.substr(0, rest.find("; "));
+    rest.remove_prefix(std::min(rest.size(), names.size() + 2));
+    std::string_view of = take_word(names);
+    if (of == "HEADER") of = "std_msgs/Header", names = "header";
+    if (of == "time" && wire == Wire::Cdr) of = "builtin_interfaces/Time";
+    while (!names.empty()) {
+      std::string name(take_word(names));
+      if (name.size() == 1 && wire == Wire::Cdr) name = lower_case(name);  // the matrices of CameraInfo
+      text += fmt::format("{} {}\n", of, name);
+    }
+  }
   return text;
 }
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <string_view>
 
-#include "edged/io/ros/bag/message_source.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 
 namespace edged {
 
 struct MessageDefinition {
   std::string text;  ///< its fields, then those of each contained message, in the form of ROS 1 or 2
-  std::string md5;   ///< by which ROS 1 identifies the version of a message; empty for CDR
+  std::string md5;   ///< checksum by which ROS 1 identifies the version of a message; empty for CDR
 };
 
 /// type: "dvs_msgs/EventArray" or another one of the table. Throws CheckError for other types.

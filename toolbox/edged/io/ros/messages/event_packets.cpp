@@ -118,7 +118,7 @@ Duration SensorClock::offset(Timestamp first, Timestamp last, Timestamp stamp) {
   return *offset_;
 }
 
-EvtDecoder& EventPacketDecoder::evt(EvtFormat format) {
+EvtDecoder& EventMessageDecoder::evt(EvtFormat format) {
   constexpr int kMostSide = 1 << 11;  // of the coordinates of its words
   if (!evt_ || evt_->format != format) {
     evt_.emplace(Evt{format, EvtDecoder(format, kMostSide, kMostSide)});
@@ -127,11 +127,11 @@ EvtDecoder& EventPacketDecoder::evt(EvtFormat format) {
   return evt_->decoder;
 }
 
-std::size_t EventPacketDecoder::left_out() const {
+std::size_t EventMessageDecoder::left_out() const {
   return evt_ ? evt_->decoder.counts().untimed + evt_->decoder.counts().outside : 0;
 }
 
-std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
+std::vector<Event> EventMessageDecoder::decode(const EventPacket& packet) {
   if (sequence_ && packet.sequence != *sequence_ + 1) {
     clock_.reset();
     if (evt_) evt_->decoder.reset();
@@ -157,6 +157,19 @@ std::vector<Event> EventPacketDecoder::decode(const EventPacket& packet) {
   const Duration offset = clock_.offset(begin, events.back().t, packet.stamp);
   for (Event& event : events) event.t += offset;
   return events;
+}
+
+EventArray EventMessageDecoder::decode(std::string_view type, WireReader message) {
+  constexpr std::uint32_t kMostSide = 16384;  // the limit of --geometry
+  EventArray array;
+  if (type == "event_camera_msgs/EventPacket" || type == "event_array_msgs/EventArray") {
+    const EventPacket packet = read_event_packet(message);
+    array = {packet.width, packet.height, decode(packet)};
+  } else {
+    array = read_event_array(message);
+  }
+  if (array.width > kMostSide || array.height > kMostSide) throw Damage("a sensor of that size");
+  return array;
 }
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The events of event_camera_msgs packets, on the clock of the headers' stamps.
+// The events of all types of messages, those of event_camera_msgs packets on the clock of the headers' stamps.
 #pragma once
 
 #include <optional>
@@ -21,13 +21,16 @@ class SensorClock {
 
  private:
   std::optional<Duration> offset_;
-  Timestamp last_first_, last_last_;  ///< of the packet before
+  Timestamp last_first_, last_last_;  ///< stamps of the packet before
 };
 
-/// Decodes the encodings evt3, evt21, evt2, mono, libcaer and libcaer_cmp. The clock of the sensor (of the first four)
-/// is aligned anew after missing packets.
-class EventPacketDecoder {
+/// Decodes the event messages of one stream, in order: all types of event arrays, and packets in the encodings evt3,
+/// evt21, evt2, mono, libcaer and libcaer_cmp. The clock of the sensor (of the first four) is aligned anew after
+/// missing packets.
+class EventMessageDecoder {
  public:
+  /// type: one with the role Events. Throws Damage.
+  EventArray decode(std::string_view type, WireReader message);
   /// Throws Damage for packets that it cannot decode, also for other encodings.
   std::vector<Event> decode(const EventPacket& packet);
 
@@ -43,8 +46,8 @@ class EventPacketDecoder {
   EvtDecoder& evt(EvtFormat format);
 
   std::optional<Evt> evt_;
-  std::uint16_t column_ = 0;               ///< of libcaer_cmp, kept from packet to packet
-  std::optional<std::uint64_t> sequence_;  ///< of the last packet
+  std::uint16_t column_ = 0;               ///< column in libcaer_cmp, kept from packet to packet
+  std::optional<std::uint64_t> sequence_;  ///< number of the last packet
   SensorClock clock_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads messages field by field, in the order of their definitions.
+// Reads and writes messages field by field, in the order of their definitions.
 #include "edged/io/ros/messages/messages.hpp"
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/io/parse/distortion.hpp"
 #include "edged/io/parse/image_codec.hpp"
-#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {
@@ -54,18 +53,6 @@ cv::Mat upper_bytes(const cv::Mat& words, bool big_endian) {
   return gray;
 }
 
-Timestamp checked_stamp(std::int64_t ns) {
-  if (ns < 0 || ns > kMaxStampNs) throw Damage("stamp out of range");
-  return timestamp_from_ns(ns);
-}
-
-StampedPose pose_from(Timestamp t, WireReader& message) {
-  const Eigen::Vector3d p = message.vector<3>();
-  const Eigen::Vector4d xyzw = message.vector<4>();
-  if (!p.allFinite() || !(std::abs(xyzw.norm() - 1.0) < 0.1)) throw Damage("no pose");
-  return {t, SE3(Eigen::Quaterniond(xyzw), p)};  // Eigen's order of coefficients is x, y, z, w, too
-}
-
 // The ICAO standard atmosphere below 11 km, with its standard pressure at sea level. So the zero of the heights is
 // arbitrary.
 constexpr double kSeaLevel_pa = 101325.0, kAtmosphere_m = 44330.77, kAtmosphereExponent = 0.190263;
@@ -96,48 +83,16 @@ VelocitySample read_twist(std::string_view type, Timestamp t, WireReader& messag
   return sample;
 }
 
+template <std::size_t N>
+constexpr std::array<double, N> kZeros{};
+
 }  // namespace
-
-WireReader::WireReader(Wire wire, ByteSpan message) : wire_(wire), reader_(message) {
-  if (wire == Wire::Ros1) return;
-  ByteReader kind(message);
-  kind.take(1);
-  if (kind.number<std::uint8_t>() != 1) throw Damage("not plain little-endian CDR");
-  kind.take(2);
-  reader_ = ByteReader(message.subspan(4));
-}
-
-std::string_view WireReader::text() {
-  const std::string_view value = reader_.text(number<std::uint32_t>());
-  return wire_ == Wire::Cdr && value.ends_with('\0') ? value.substr(0, value.size() - 1) : value;
-}
-
-ByteSpan WireReader::bytes() { return reader_.take(number<std::uint32_t>()); }
-
-Timestamp WireReader::time() {
-  const std::int64_t s = wire_ == Wire::Cdr ? number<std::int32_t>() : std::int64_t{number<std::uint32_t>()};
-  return checked_stamp(s * 1'000'000'000 + number<std::uint32_t>());
-}
-
-Timestamp WireReader::header() {
-  if (wire_ == Wire::Ros1) number<std::uint32_t>();  // seq
-  const Timestamp stamp = time();
-  text();  // frame_id
-  return stamp;
-}
-
-std::uint32_t WireReader::list(std::size_t item_bytes) {
-  const auto length = number<std::uint32_t>();
-  if (length > reader_.left() / item_bytes) throw Damage("list longer than its message");
-  return length;
-}
 
 EventArray read_event_array(WireReader message) {
   constexpr std::size_t kEventBytes = 13;
   message.header();
   EventArray array;
-  array.height = message.number<std::uint32_t>();
-  array.width = message.number<std::uint32_t>();
+  message.numbers(array.height, array.width);
   array.events.resize(message.list(kEventBytes));
   for (Event& event : array.events) {
     event.x = message.number<std::uint16_t>();
@@ -148,17 +103,38 @@ EventArray read_event_array(WireReader message) {
   return array;
 }
 
+std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sensor) {
+  WireWriter out(wire);
+  out.header(batch.events.front().t, batch.camera);
+  out.numbers(static_cast<std::uint32_t>(sensor.height), static_cast<std::uint32_t>(sensor.width),
+              static_cast<std::uint32_t>(batch.events.size()));
+  for (const Event& event : batch.events) {
+    out.number(event.x);
+    out.number(event.y);
+    out.time(event.t);
+    out.number<std::uint8_t>(event.positive ? 1 : 0);
+  }
+  return out.message();
+}
+
 EventPacket read_event_packet(WireReader message) {
   EventPacket packet;
   packet.stamp = message.header();
-  packet.height = message.number<std::uint32_t>();
-  packet.width = message.number<std::uint32_t>();
-  packet.sequence = message.number<std::uint64_t>();
-  packet.time_base = message.number<std::uint64_t>();
+  message.numbers(packet.height, packet.width, packet.sequence, packet.time_base);
   packet.encoding = message.text();
   message.number<std::uint8_t>();  // byte order of the recording computer; the encodings define their own
   packet.events = message.bytes();
   return packet;
+}
+
+std::string event_packet_message(Wire wire, const EventPacket& packet, std::string_view camera) {
+  WireWriter out(wire);
+  out.header(packet.stamp, camera);
+  out.numbers(packet.height, packet.width, packet.sequence, packet.time_base);
+  out.text(packet.encoding);
+  out.number(std::uint8_t{0});  // little-endian
+  out.bytes(packet.events);
+  return out.message();
 }
 
 ImuMessage read_imu_message(WireReader message) {
@@ -181,6 +157,19 @@ ImuSample read_imu(WireReader message) {
   return {imu.t, imu.gyro, imu.accel};
 }
 
+std::string imu_message(Wire wire, const ImuSample& sample) {
+  WireWriter out(wire);
+  out.header(sample.t, "body");
+  out.numbers(std::array{0.0, 0.0, 0.0, 1.0});
+  out.number(-1.0);  // a covariance that begins with -1: no orientation
+  out.numbers(kZeros<8>);
+  out.numbers({sample.gyro_B.data(), 3});
+  out.numbers(kZeros<9>);
+  out.numbers({sample.accel_B.data(), 3});
+  out.numbers(kZeros<9>);
+  return out.message();
+}
+
 CameraModel read_camera_info(WireReader message) try {
   message.header();
   const auto height = message.number<std::uint32_t>(), width = message.number<std::uint32_t>();
@@ -195,6 +184,24 @@ CameraModel read_camera_info(WireReader message) try {
                      distortion.k);
 } catch (const InputError& e) {
   throw Damage(e.what());
+}
+
+std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view camera, const CameraModel& model) {
+  const bool distorted = model.distortion() != DistortionModel::None;
+  const LensModel& lens = lens_model(distorted ? model.distortion() : DistortionModel::RadTan);
+  WireWriter out(wire);
+  out.header(stamp, camera);
+  out.numbers(static_cast<std::uint32_t>(model.height()), static_cast<std::uint32_t>(model.width()));
+  out.text(lens.ros.empty() ? lens.name : lens.ros);  // our name where ROS has none
+  out.number(static_cast<std::uint32_t>(lens.most));
+  out.numbers({model.coefficients().data(), lens.most});
+  const double fx = model.fx(), fy = model.fy(), cx = model.cx(), cy = model.cy();
+  out.numbers(std::array{fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0});                 // K
+  out.numbers(std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});             // no rectification
+  out.numbers(std::array{fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0});  // P
+  for (int i = 0; i < 6; ++i) out.number(std::uint32_t{0});                         // no binning, the whole image
+  out.number(std::uint8_t{0});
+  return out.message();
 }
 
 GrayImage read_image(WireReader message) try {
@@ -236,6 +243,22 @@ GrayImage read_compressed_image(WireReader message) {
   return out;
 }
 
+GrayImage read_frame(std::string_view type, WireReader message) {
+  return type == "sensor_msgs/Image" ? read_image(message) : read_compressed_image(message);
+}
+
+std::string image_message(Wire wire, const Frame& frame) {
+  const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
+  WireWriter out(wire);
+  out.header(frame.t, frame.camera);
+  out.numbers(static_cast<std::uint32_t>(image.rows), static_cast<std::uint32_t>(image.cols));
+  out.text("mono8");
+  out.number(std::uint8_t{0});  // little-endian
+  out.number(static_cast<std::uint32_t>(image.cols));
+  out.bytes({image.data, image.total()});
+  return out.message();
+}
+
 ExternalSample read_external(std::string_view type, WireReader message) {
   const Timestamp t = message.header();
   ExternalSample sample;
@@ -262,15 +285,44 @@ AirPressure pressure_of_height(const HeightSample& height) {
   return {pressure_pa, sigma_pa * sigma_pa};
 }
 
-StampedPose read_pose_stamped(WireReader message) {
-  const Timestamp t = message.header();
-  return pose_from(t, message);
+std::string external_message(Wire wire, const ExternalSample& sample) {
+  WireWriter out(wire);
+  if (const auto* height = std::get_if<HeightSample>(&sample)) {
+    const AirPressure pressure = pressure_of_height(*height);
+    out.header(height->t, "body");
+    out.numbers(std::array{pressure.pressure_pa, pressure.variance_pa2});
+    return out.message();
+  }
+  constexpr double kNotMeasured = 1e6;  // a variance [m^2/s^2], by the convention of drivers
+  const auto& velocity = std::get<VelocitySample>(sample);
+  std::array<double, 36> covariance{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double sigma = velocity.sigma[static_cast<Eigen::Index>(axis)];
+    covariance[7 * axis] = std::isfinite(sigma) ? sigma * sigma : kNotMeasured;
+  }
+  out.header(velocity.t, "body");
+  out.numbers({velocity.v_S.data(), 3});
+  out.numbers(kZeros<3>);
+  out.numbers(covariance);
+  return out.message();
 }
 
-NamedPose read_named_pose(WireReader message) {
+NamedPose read_pose(std::string_view type, WireReader message) {
   const Timestamp t = message.header();
-  const std::string_view frame = message.text();
-  return {pose_from(t, message), frame};
+  const std::string_view frame = type == "geometry_msgs/PoseStamped" ? "" : message.text();
+  const Eigen::Vector3d p = message.vector<3>();
+  const Eigen::Vector4d xyzw = message.vector<4>();
+  if (!p.allFinite() || !(std::abs(xyzw.norm() - 1.0) < 0.1)) throw Damage("no pose");
+  return {{t, SE3(Eigen::Quaterniond(xyzw), p)}, frame};  // Eigen's order of coefficients is x, y, z, w, too
+}
+
+std::string transform_message(Wire wire, const StampedPose& pose, std::string_view child) {
+  WireWriter out(wire);
+  out.header(pose.t, "world");
+  out.text(child);
+  out.numbers({pose.T.translation().data(), 3});
+  out.numbers({pose.T.rotation().coeffs().data(), 4});  // Eigen's order of coefficients is x, y, z, w, too
+  return out.message();
 }
 
 }  // namespace edged

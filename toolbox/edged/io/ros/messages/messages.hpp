@@ -1,47 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Parses messages of either wire format. All functions throw Damage for invalid bytes.
+// Reads and writes whole messages in either wire format. All functions that read throw Damage for invalid bytes.
 #pragma once
 
 #include <string_view>
 #include <vector>
 
-#include "edged/io/ros/bag/message_source.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 #include "edged/measurement.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
-
-/// Fields in the order of the message's definition. ROS 1 packs them; CDR begins with four bytes that name its kind and
-/// aligns each number to its own size, counted from behind them.
-class WireReader {
- public:
-  WireReader(Wire wire, ByteSpan message);
-
-  template <typename T>
-  T number() {
-    if (wire_ == Wire::Cdr) reader_.take((sizeof(T) - reader_.at() % sizeof(T)) % sizeof(T));
-    return reader_.number<T>();
-  }
-  template <int N>
-  Eigen::Matrix<double, N, 1> vector() {
-    Eigen::Matrix<double, N, 1> v;
-    for (double& x : v) x = number<double>();
-    return v;
-  }
-  std::string_view text();
-  ByteSpan bytes();
-  Timestamp time();
-  /// The stamp of a std_msgs/Header.
-  Timestamp header();
-  /// Length of a list whose items have at least that many bytes.
-  std::uint32_t list(std::size_t item_bytes);
-
- private:
-  Wire wire_;
-  ByteReader reader_;
-};
 
 /// dvs_msgs, prophesee_event_msgs or dv_ros_msgs EventArray.
 struct EventArray {
@@ -49,6 +19,8 @@ struct EventArray {
   std::vector<Event> events;
 };
 EventArray read_event_array(WireReader message);
+/// events: not empty. The stamp is that of the first event.
+std::string event_array_message(Wire wire, const EventBatch& batch, cv::Size sensor);
 
 /// event_camera_msgs/EventPacket: events in the encoding of the sensor.
 struct EventPacket {
@@ -60,6 +32,7 @@ struct EventPacket {
   ByteSpan events;
 };
 EventPacket read_event_packet(WireReader message);
+std::string event_packet_message(Wire wire, const EventPacket& packet, std::string_view camera);
 
 /// sensor_msgs/Imu, whose driver may leave out what it does not measure.
 struct ImuMessage {
@@ -70,9 +43,11 @@ struct ImuMessage {
 };
 ImuMessage read_imu_message(WireReader message);
 ImuSample read_imu(WireReader message);
+std::string imu_message(Wire wire, const ImuSample& sample);
 
 /// sensor_msgs/CameraInfo. Throws Damage also if the camera is not calibrated or its distortion is not supported.
 CameraModel read_camera_info(WireReader message);
+std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view camera, const CameraModel& model);
 
 /// An image of any encoding of 8 or 16 bits, as grey.
 struct GrayImage {
@@ -81,10 +56,17 @@ struct GrayImage {
 };
 GrayImage read_image(WireReader message);
 GrayImage read_compressed_image(WireReader message);
+/// An image by the type of its message, which has the role Frames.
+GrayImage read_frame(std::string_view type, WireReader message);
+/// sensor_msgs/Image of 8 bit.
+std::string image_message(Wire wire, const Frame& frame);
 
 /// An external sample by the type of the message: FluidPressure (by the standard atmosphere), Range (downwards) or any
 /// twist.
 ExternalSample read_external(std::string_view type, WireReader message);
+/// The message that read_external() reads back: sensor_msgs/FluidPressure for a height,
+/// geometry_msgs/TwistWithCovarianceStamped for a velocity.
+std::string external_message(Wire wire, const ExternalSample& sample);
 
 /// The reverse of the standard atmosphere. variance_pa2: 0 where the height has no sigma.
 struct AirPressure {
@@ -92,12 +74,13 @@ struct AirPressure {
 };
 AirPressure pressure_of_height(const HeightSample& height);
 
-StampedPose read_pose_stamped(WireReader message);
-/// The pose of TransformStamped and Odometry, which name its frame.
+/// The pose of a TransformStamped, Odometry or PoseStamped.
 struct NamedPose {
   StampedPose pose;
-  std::string_view frame;
+  std::string_view frame;  ///< whose pose it is; "" of a PoseStamped, which does not name it
 };
-NamedPose read_named_pose(WireReader message);
+NamedPose read_pose(std::string_view type, WireReader message);
+/// geometry_msgs/TransformStamped from frame `child` to "world".
+std::string transform_message(Wire wire, const StampedPose& pose, std::string_view child);
 
 }  // namespace edged

@@ -9,7 +9,7 @@
 
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/parse/evt_encoder.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 
 namespace edged {
@@ -34,9 +34,25 @@ class Messages : public ::testing::TestWithParam<Wire> {
                  const Rig* rig = nullptr) const {
     return open_recording(write_bag(folder_, container(), topics), rig, options);
   }
-  /// The events of packets in an encoding. `encode` encodes 300 events per packet.
-  template <typename Encode>
-  void expect_packets_read(std::string_view encoding, const Encode& encode) const;
+  /// A small bag with the intrinsics of the event camera.
+  std::optional<Calibration> intrinsics_of(const std::string& camera_info) const {
+    std::vector<TestTopic> topics = SmallBag(wire()).topics;
+    topics.push_back({"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, camera_info}}});
+    return open(topics).calibration;
+  }
+  /// sensor_msgs/CameraInfo of 346 x 260 px.
+  std::string camera_info(const char* lens, const std::vector<double>& coefficients,
+                          const std::vector<double>& K) const {
+    WireWriter out(wire());
+    out.header(kStart, "c");
+    out.numbers(std::uint32_t{260}, std::uint32_t{346});
+    out.text(lens);
+    out.number(static_cast<std::uint32_t>(coefficients.size()));
+    out.numbers(coefficients);
+    out.numbers(K);
+    out.numbers(std::vector<double>(9 + 12, 0.0));
+    return out.message();
+  }
 
   TempFolder folder_;
 };
@@ -57,73 +73,72 @@ TEST_P(Messages, EventArraysOfThreePackagesGiveEveryEvent) {
   }
 }
 
-template <typename Encode>
-void Messages::expect_packets_read(std::string_view encoding, const Encode& encode) const {
-  std::vector<Event> events;
-  TestTopic topic{"/event_camera/events", "event_camera_msgs/EventPacket", {}};
-  for (std::uint64_t i = 0; i < 3; ++i) {
-    const EventBatch batch = bag_events(kStart + i * std::chrono::milliseconds(10), 300, 5);
-    topic.messages.emplace_back(batch.events.front().t,
-                                event_packet_message(wire(), batch.events.front().t, i, kStartNs + i * 10'000'000,
-                                                     encoding, encode(batch.events)));
-    events.insert(events.end(), batch.events.begin(), batch.events.end());
+using Encode = std::function<std::string(const std::vector<Event>& events)>;
+
+/// Continues from packet to packet.
+Encode evt_encoding(EvtFormat format) {
+  return [encoder = EvtEncoder(format)](const std::vector<Event>& events) mutable { return encoder.encode(events); };
+}
+
+std::string encode_mono(const std::vector<Event>& events) {
+  std::string bytes;
+  for (const Event& e : events)
+    append_number(bytes, std::uint64_t{e.positive} << 63U | std::uint64_t{e.y} << 48U | std::uint64_t{e.x} << 32U |
+                             static_cast<std::uint64_t>((e.t - events.front().t).count()));
+  return bytes;
+}
+
+std::string encode_libcaer(const std::vector<Event>& events) {
+  std::string bytes;
+  for (const Event& e : events) {
+    append_number(bytes, std::uint32_t{e.x} << 17U | std::uint32_t{e.y} << 2U | std::uint32_t{e.positive} << 1U | 1U);
+    append_number(bytes, static_cast<std::uint32_t>((e.t - events.front().t).count() / 1000));
   }
-  EXPECT_TRUE(read_all(*open({topic}).dataset).events == events);
+  return bytes;
 }
 
-TEST_P(Messages, PacketsOfPropheseesEncodingsGiveEveryEvent) {
-  for (const auto& [encoding, format] :
-       {std::pair("evt3", EvtFormat::Evt3), std::pair("evt21", EvtFormat::Evt21), std::pair("evt2", EvtFormat::Evt2)}) {
-    SCOPED_TRACE(encoding);
-    EvtEncoder encoder(format);
-    expect_packets_read(encoding, [&](const std::vector<Event>& events) { return encoder.encode(events); });
+std::string encode_libcaer_cmp(const std::vector<Event>& events) {
+  std::string bytes;
+  const auto word = [&bytes](unsigned kind, unsigned value) {
+    append_number(bytes, static_cast<std::uint16_t>(kind << 12U | value));
+  };
+  for (const Event& e : events) {
+    const auto us = static_cast<unsigned>((e.t - events.front().t).count() / 1000);
+    const unsigned polarity = e.positive ? 1U << 11U : 0U;
+    word(0, us >> 12U);
+    word(1, us & 0xFFFU);
+    word(2, e.x);
+    if (e.y % 2 == 0) {
+      word(3, e.y | polarity);
+    } else {  // the same as the second of eight rows, or of the eight after those
+      const unsigned base = e.y > 8 ? e.y - 9U : e.y - 1U;
+      word(4, base | polarity);
+      if (e.y > 8) word(5, 0);
+      word(5, 2);
+    }
   }
+  return bytes;
 }
 
-TEST_P(Messages, PacketsOfMonoGiveEveryEvent) {
-  expect_packets_read("mono", [](const std::vector<Event>& events) {
-    std::string bytes;
-    for (const Event& e : events)
-      append_number(bytes, std::uint64_t{e.positive} << 63U | std::uint64_t{e.y} << 48U | std::uint64_t{e.x} << 32U |
-                               static_cast<std::uint64_t>((e.t - events.front().t).count()));
-    return bytes;
-  });
-}
-
-TEST_P(Messages, PacketsOfLibcaerGiveEveryEvent) {
-  expect_packets_read("libcaer", [](const std::vector<Event>& events) {
-    std::string bytes;
-    for (const Event& e : events) {
-      append_number(bytes, std::uint32_t{e.x} << 17U | std::uint32_t{e.y} << 2U | std::uint32_t{e.positive} << 1U | 1U);
-      append_number(bytes, static_cast<std::uint32_t>((e.t - events.front().t).count() / 1000));
+TEST_P(Messages, PacketsOfEveryEncodingGiveEveryEvent) {
+  const std::pair<const char*, Encode> encodings[] = {{"evt3", evt_encoding(EvtFormat::Evt3)},
+                                                      {"evt21", evt_encoding(EvtFormat::Evt21)},
+                                                      {"evt2", evt_encoding(EvtFormat::Evt2)},
+                                                      {"mono", encode_mono},
+                                                      {"libcaer", encode_libcaer},
+                                                      {"libcaer_cmp", encode_libcaer_cmp}};
+  for (const auto& [encoding, encode] : encodings) {
+    std::vector<Event> events;
+    TestTopic topic{"/event_camera/events", "event_camera_msgs/EventPacket", {}};
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      const EventBatch batch = bag_events(kStart + i * std::chrono::milliseconds(10), 300, 5);
+      const Timestamp t = batch.events.front().t;
+      topic.messages.emplace_back(
+          t, event_packet_message(wire(), t, i, kStartNs + i * 10'000'000, encoding, encode(batch.events)));
+      events.insert(events.end(), batch.events.begin(), batch.events.end());
     }
-    return bytes;
-  });
-}
-
-TEST_P(Messages, PacketsOfCompressedLibcaerGiveEveryEvent) {
-  expect_packets_read("libcaer_cmp", [](const std::vector<Event>& events) {
-    std::string bytes;
-    const auto word = [&bytes](unsigned kind, unsigned value) {
-      append_number(bytes, static_cast<std::uint16_t>(kind << 12U | value));
-    };
-    for (const Event& e : events) {
-      const auto us = static_cast<unsigned>((e.t - events.front().t).count() / 1000);
-      const unsigned polarity = e.positive ? 1U << 11U : 0U;
-      word(0, us >> 12U);
-      word(1, us & 0xFFFU);
-      word(2, e.x);
-      if (e.y % 2 == 0) {
-        word(3, e.y | polarity);
-      } else {  // the same as the second of eight rows, or of the eight after those
-        const unsigned base = e.y > 8 ? e.y - 9U : e.y - 1U;
-        word(4, base | polarity);
-        if (e.y > 8) word(5, 0);
-        word(5, 2);
-      }
-    }
-    return bytes;
-  });
+    EXPECT_TRUE(read_all(*open({topic}).dataset).events == events) << encoding;
+  }
 }
 
 TEST_P(Messages, PacketsOfUnknownEncodingsAreRefusedByTheirName) {
@@ -151,8 +166,7 @@ TEST_P(Messages, ImagesOfEveryEncodingBecomeGrey) {
     if (image.channels() > 1) image.setTo(cv::Scalar(255, 0, 0, 255));
     WireWriter out(wire());
     out.header(kStart, "frames");
-    out.number(std::uint32_t{12});
-    out.number(std::uint32_t{16});
+    out.numbers(std::uint32_t{12}, std::uint32_t{16});
     out.text(c.encoding);
     out.number(static_cast<std::uint8_t>(c.big_endian));
     const std::size_t row = 16 * image.elemSize(), step = row + 3;  // rows may be padded
@@ -274,10 +288,7 @@ TEST_P(Messages, CameraInfoHoldsEveryLens) {
         CameraModel(346, 260, 400, 401, 170, 130, DistortionModel::Omni, {1.1, 0.1, 0.2, 1e-3, 2e-3}),
         CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::DoubleSphere, {-0.2, 0.6}),
         CameraModel(346, 260, 250, 251, 170, 130, DistortionModel::ExtendedUnified, {0.6, 1.1})}) {
-    std::vector<TestTopic> topics = SmallBag(wire()).topics;
-    topics.push_back(
-        {"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, camera_info_message(wire(), kStart, "c", model)}}});
-    const auto calibration = open(topics).calibration;
+    const auto calibration = intrinsics_of(camera_info_message(wire(), kStart, "c", model));
     ASSERT_TRUE(calibration) << to_string(model.distortion());
     EXPECT_EQ(calibration->rig.camera("events").model, model) << to_string(model.distortion());
   }
@@ -285,34 +296,15 @@ TEST_P(Messages, CameraInfoHoldsEveryLens) {
 
 TEST_P(Messages, IntrinsicsMayBePaddedWithZeros) {
   for (const double s1 : {0.0, 0.1}) {
-    std::vector<TestTopic> topics = SmallBag(wire()).topics;
-    WireWriter out(wire());
-    out.header(kStart, "c");
-    out.number(std::uint32_t{260});
-    out.number(std::uint32_t{346});
-    out.text("rational_polynomial");
-    out.number(std::uint32_t{14});
     std::vector<double> k(14, 0.0);
     k[0] = -0.1, k[8] = s1;
-    out.numbers(k);
-    out.numbers(std::vector<double>{200, 0, 170, 0, 200, 130, 0, 0, 1});
-    out.numbers(std::vector<double>(9 + 12, 0.0));
-    topics.push_back({"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, out.message()}}});
-    EXPECT_EQ(open(topics).calibration.has_value(), s1 == 0.0);
+    const auto calibration = intrinsics_of(camera_info("rational_polynomial", k, {200, 0, 170, 0, 200, 130, 0, 0, 1}));
+    EXPECT_EQ(calibration.has_value(), s1 == 0.0);
   }
 }
 
 TEST_P(Messages, IntrinsicsThatAreNotOursOrNotSetAreLeftOut) {
-  std::vector<TestTopic> topics = SmallBag(wire()).topics;
-  WireWriter out(wire());
-  out.header(kStart, "c");
-  out.number(std::uint32_t{260});
-  out.number(std::uint32_t{346});
-  out.text("plumb_bob");
-  out.number(std::uint32_t{0});
-  out.numbers(std::vector<double>(9 + 9 + 12, 0.0));
-  topics.push_back({"/dvs/camera_info", "sensor_msgs/CameraInfo", {{kStart, out.message()}}});
-  EXPECT_FALSE(open(topics).calibration);
+  EXPECT_FALSE(intrinsics_of(camera_info("plumb_bob", {}, std::vector<double>(9, 0.0))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Wires, Messages, ::testing::Values(Wire::Ros1, Wire::Cdr),

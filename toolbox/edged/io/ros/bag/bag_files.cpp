@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Bags in several files.
-#include "edged/io/ros/bag/bag_folder.hpp"
+#include "edged/io/ros/bag/bag_files.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <fstream>
-#include <numeric>
 #include <set>
 
 namespace edged {
@@ -104,43 +102,6 @@ std::vector<std::string> missing_parts(const std::vector<std::filesystem::path>&
       if (!numbers.contains(i)) missing.insert(last->front + std::to_string(i) + last->back);
   }
   return {missing.begin(), missing.end()};
-}
-
-BagFolder::BagFolder(std::vector<std::unique_ptr<MessageSource>> parts) {
-  for (std::unique_ptr<MessageSource>& source : parts) {
-    Part part{std::move(source), {}};
-    for (const Topic& topic : part.source->topics()) {
-      part.topics.push_back(topic_index(topics_, topic.name, topic.type, topic.definition));
-      topics_[part.topics.back()].count += topic.count;
-    }
-    parts_.push_back(std::move(part));
-  }
-}
-
-Duration BagFolder::length() const {
-  return std::accumulate(parts_.begin(), parts_.end(), Duration(0),
-                         [](Duration sum, const Part& part) { return sum + part.source->length(); });
-}
-
-std::optional<Message> BagFolder::next() {
-  for (; current_ < parts_.size(); ++current_) {
-    const Part& part = parts_[current_];
-    while (const auto message = part.source->next())
-      if (message->topic < part.topics.size())  // the index of a damaged file may lack topics that are found later
-        return Message{part.topics[message->topic], message->data};
-  }
-  return std::nullopt;
-}
-
-std::optional<Message> BagFolder::next_of(std::size_t topic) {
-  for (; current_ < parts_.size(); ++current_) {
-    const Part& part = parts_[current_];
-    const auto own = std::ranges::find(part.topics, topic);
-    if (own == part.topics.end()) continue;
-    if (const auto message = part.source->next_of(static_cast<std::size_t>(own - part.topics.begin())))
-      return Message{topic, message->data};
-  }
-  return std::nullopt;
 }
 
 }  // namespace edged

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The messages in the records of ROS 1 bags and MCAP files: reading and writing.
+#pragma once
+
+#include <map>
+#include <utility>
+
+#include "edged/io/archive/compression.hpp"
+#include "edged/io/archive/record_file.hpp"
+#include "edged/io/parse/repairs.hpp"
+#include "edged/io/ros/bag/message_source.hpp"
+
+namespace edged {
+
+/// Reads a file of records, most of them in chunks that may be compressed. An index at the end holds topics and counts.
+/// If it is missing or damaged, as after a crash of the recorder, the whole file is read once.
+class RecordSource : public MessageSource, protected RecordFile {
+ public:
+  const std::vector<Topic>& topics() const final { return topics_; }
+  Duration length() const final { return last_ > first_ ? last_ - first_ : Duration(0); }
+  std::optional<Timestamp> begin_stamp() const final { return last_ >= first_ ? std::optional(first_) : std::nullopt; }
+  std::optional<Message> read(std::optional<std::size_t> only) final;
+
+ protected:
+  static constexpr std::uint64_t kLargestRecord = 1U << 30U;  ///< longer ones are damage; chunks of 768 kB are usual
+  enum Kind : std::uint32_t { kSkipped, kPlain, kChunk };     ///< kPlain: read by take_record()
+
+  /// first_record: its offset, after the magic bytes.
+  RecordSource(const std::filesystem::path& file, std::uint64_t first_record, Repairs* repairs)
+      : RecordFile(BinaryFile(file), first_record), name_(file.string()), repairs_(repairs) {}
+
+  /// Reads topics, counts and times. To be called last in a constructor. Throws InputError without messages.
+  void find_topics();
+
+  // The description of a format, beside locate(). Each function may throw Damage.
+
+  /// Reads the records of the index by read_index_at(), which describe topics, counts and chunks.
+  virtual void read_index() = 0;
+  /// Discards the descriptions from the records so far.
+  virtual void forget() = 0;
+  /// Takes the next record, of any kind. Nothing if it is no message.
+  virtual std::optional<Message> take_record(ByteReader& records) = 0;
+  struct PackedChunk {
+    std::string_view compression;
+    std::uint64_t bytes;  ///< uncompressed
+    ByteSpan packed;      ///< as far as it is in the file
+  };
+  /// The parts of a whole chunk record, whose data may be cut.
+  virtual PackedChunk open_chunk(ByteReader record) = 0;
+
+  void read_index_at(std::uint64_t begin, std::uint64_t end);
+  std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition) {
+    return topic_index(topics_, name, type, definition);
+  }
+  void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
+  /// Extends the time span of the messages.
+  void extend(Timestamp t);
+
+ private:
+  void count_damage(std::uint64_t at, const std::string& reason, std::optional<std::uint64_t> next) final;
+  void read_through();
+  void load(Bytes records);
+  bool load_next_record(std::optional<std::size_t> only);
+  bool may_hold(const RecordPlace& chunk, std::size_t topic) const;
+  Bytes unpack(const RecordPlace& chunk, ByteSpan record);
+  void repair(const std::string& kind, const std::string& detail);
+
+  std::string name_;
+  Repairs* repairs_;
+  std::vector<Topic> topics_;
+  Timestamp first_ = Timestamp::max(), last_ = Timestamp::min();
+  Bytes records_;  ///< the records being read
+  ByteReader reader_{ByteSpan()};
+};
+
+/// Writes messages in chunks, each followed by the index of its messages, and a summary at the end.
+class RecordWriter : public MessageSink {
+ public:
+  void write(std::size_t topic, Timestamp t, std::string_view message) final;
+  /// Call before and after messages whose times differ from their neighbours: readers find messages by the times of
+  /// their chunk.
+  void close_chunk();
+  void finish() final;
+
+ protected:
+  struct TopicRecords {
+    std::string schema, channel;  ///< the records that describe the topic
+    bool written = false;         ///< they are in a chunk
+    std::uint64_t messages = 0;
+  };
+  struct IndexEntry {
+    Timestamp t;
+    std::uint64_t offset;  ///< place of the message among the records of the chunk
+  };
+  struct ChunkInfo {
+    std::uint64_t place = 0, bytes = 0;      ///< offset and length of its record in the file
+    std::uint64_t packed = 0, unpacked = 0;  ///< lengths of its records
+    Timestamp begin = Timestamp::max(), end = Timestamp::min();
+    struct TopicIndex {
+      std::uint64_t place;  ///< offset of its record in the file
+      std::size_t messages;
+    };
+    std::map<std::size_t, TopicIndex> topics = {};
+    std::uint64_t index_bytes = 0;
+  };
+
+  RecordWriter(const std::filesystem::path& file, const ChunkOptions& options) : file_(file), options_(options) {}
+
+  // The description of a format: the bytes of its records.
+
+  virtual std::string message_record(std::size_t topic, Timestamp t, std::string_view message) const = 0;
+  virtual std::string chunk_record(const ChunkInfo& chunk, std::string_view packed) const = 0;
+  virtual std::string index_record(std::size_t topic, const std::vector<IndexEntry>& entries) const = 0;
+  virtual void write_summary() = 0;
+
+  OutputFile file_;
+  ChunkOptions options_;
+  std::vector<TopicRecords> topics_;
+  std::vector<ChunkInfo> chunks_;
+
+ private:
+  std::string records_;                                   ///< the chunk that is being filled
+  std::map<std::size_t, std::vector<IndexEntry>> index_;  ///< index of that chunk, by topic
+};
+
+}  // namespace edged
