@@ -107,7 +107,7 @@ ordered_json camera_json(const RigCamera& camera, bool has_extrinsics) {
   const CameraModel& m = camera.model;
   const FieldOfView view = field_of_view(m);
   std::vector<double> coefficients(m.coefficients().begin(), m.coefficients().end());
-  coefficients.resize(lens_model(m.distortion()).most);
+  coefficients.resize(lens_model(m.distortion()).max_coefficients);
   ordered_json out = {{"name", camera.name},
                       {"modality", camera.modality == Modality::Events ? "events" : "frames"},
                       {"resolution_px", {m.width(), m.height()}},

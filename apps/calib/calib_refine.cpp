@@ -17,7 +17,7 @@
 #include "common/json_text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
-#include "edged/estimator/estimator.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/calibration_prior.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "run/verdict.hpp"
@@ -43,7 +43,8 @@ struct RefinedCamera {
 /// As the covariances of a run are inflated, its prior is.
 CalibrationVector inflated_prior(const RigCamera& camera, Mode mode) {
   const EstimatorConfig config;
-  const double inflation = config.sigma_inflation * (mode == Mode::Events ? kEventsAloneInflation : 1.0);
+  const double inflation =
+      config.sigma_inflation * (mode == Mode::Events ? kEstimatorTuning.events_alone_inflation : 1.0);
   return inflation * calibration_sigmas(config.calibration, camera.model);
 }
 

@@ -58,7 +58,8 @@ std::string imu_part(const CameraFacts& c) {
 std::string distortion_list() {
   std::string list;
   for (const LensModel& lens : lens_models())
-    list += fmt::format("{}{}{}{}", list.empty() ? "" : "; ", lens.name, lens.most > 0 ? ": " : "", lens.coefficients);
+    list += fmt::format("{}{}{}{}", list.empty() ? "" : "; ", lens.name, lens.max_coefficients > 0 ? ": " : "",
+                        lens.coefficients);
   return list;
 }
 

@@ -94,7 +94,7 @@ Json camera_calibration(Timestamp t, const RigCamera& camera, double scale) {
   const CameraModel& m = camera.model;
   const LensModel& lens = lens_model(m.distortion());
   // Of a model without a name there: a pinhole with the focal length near the axis.
-  const auto k = std::span(m.coefficients()).first(lens.foxglove.empty() ? 0 : lens.most);
+  const auto k = std::span(m.coefficients()).first(lens.foxglove.empty() ? 0 : lens.max_coefficients);
   const std::vector<double> D(k.begin(), k.end());
   const double on_axis = axis_slope(m), fx = scale * m.fx() * on_axis, fy = scale * m.fy() * on_axis;
   // The centre of the first pixel is at zero, whatever its size.

@@ -21,7 +21,7 @@ constexpr double kKeyframeStep_s = 0.1, kRecentStep_s = 0.03;
 
 /// Keyframes and recent states near the truth, two cameras with 60 landmarks each, a gauge and bias prior.
 Window full_window(TestWorld& world) {
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   OdomState nav;
   double t = 1.0;
   world.packet(t - kKeyframeStep_s, kKeyframeStep_s, true);

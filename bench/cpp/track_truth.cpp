@@ -98,7 +98,7 @@ class RecordedTruth final : public TrackTruth {
         if (const auto pose = T_W_C(seen.camera, observation.t)) views.push_back({*pose, observation.point});
       }
       if (views.size() < kFewestObservations) continue;
-      if (const auto found = triangulate(views, kLeastParallax)) trail.p_W = found->p_W;
+      if (const auto found = triangulate(views, kLeastParallax)) trail.p_W = found->p_A;
     }
   }
 

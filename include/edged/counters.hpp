@@ -26,12 +26,13 @@ struct ExternalCounters {
 
 /// Measurements that were dropped on arrival.
 struct IntakeCounters {
-  std::size_t unknown_camera = 0;   ///< measurements of a camera that the rig does not have
-  std::size_t unused_camera = 0;    ///< of one of the rig that the run does not use
-  std::size_t absurd_stamps = 0;    ///< events and measurements more than 146 years from zero
-  std::size_t far_ahead = 0;        ///< the same, more than 10 s ahead of all others and contradicted by the next
+  std::size_t unknown_camera = 0;  ///< measurements of a camera that the rig does not have
+  std::size_t unused_camera = 0;   ///< measurements of a camera of the rig that the run does not use
+  std::size_t absurd_stamps = 0;   ///< events and measurements more than 146 years from zero
+  std::size_t far_ahead =
+      0;  ///< events and measurements more than 10 s ahead of all others and contradicted by the next
   std::size_t clocks_set_back = 0;  ///< number of clock jumps; the estimator restarts at each
-  std::size_t events_outside = 0;   ///< of the pixels of their camera
+  std::size_t events_outside = 0;   ///< events beyond the pixels of their camera
   std::size_t frames_unfit = 0;     ///< not grey (CV_8UC1), or not of their camera's size
   std::size_t external_unfit = 0;   ///< samples of other sensors: not finite, or more than such a sensor measures
   std::size_t no_room = 0;          ///< measurements that arrived with full queues, or after finish()

@@ -25,8 +25,8 @@ struct GroundTruth {
 /// One of the streams that lie in a recording, read or not.
 struct StreamInfo {
   std::string name;       ///< topic, or name in the file
-  std::string type;       ///< of its messages
-  std::size_t count = 0;  ///< of messages; 0 where it is not known
+  std::string type;       ///< type of its messages
+  std::size_t count = 0;  ///< number of messages; 0 where it is not known
   /// "events", "frames", "imu", "truth", an external sensor, of several cameras of a kind the name; "" where it is not
   /// read.
   std::string role;
@@ -34,10 +34,10 @@ struct StreamInfo {
 
 /// A camera whose measurements a recording delivers.
 struct RecordedCamera {
-  std::string name;  ///< of its measurements
+  std::string name;  ///< camera of its measurements
   Modality modality = Modality::Frames;
   std::string stream = {};  ///< its topic, stream or file; "" where there is only one
-  cv::Size sensor = {};     ///< of an event camera [px]; empty where it is not known
+  cv::Size sensor = {};     ///< size of an event camera [px]; empty where it is not known
 };
 
 /// What is known of a recording before it is read through.
@@ -50,11 +50,11 @@ struct DatasetInfo {
   std::optional<Timestamp> end;    ///< last stamp, if known cheaply (for the progress line)
   bool has_events = false, has_frames = false, has_imu = false;
   std::vector<std::string> external;    ///< names of the external sensors that it has, as of `external_sensors()`
-  std::vector<StreamInfo> streams;      ///< of formats that name them
+  std::vector<StreamInfo> streams;      ///< streams, in formats that name them
   cv::Size event_sensor;                ///< size of the event camera [px]; empty where it is not known
   std::string event_camera = "events";  ///< camera name of its event batches
   std::string frame_camera = "frames";  ///< camera name of its frames
-  /// Those beside the first of a kind, which the two names above are: event cameras, then frame cameras.
+  /// Cameras beside the first of a kind, which the two names above are: event cameras, then frame cameras.
   std::vector<RecordedCamera> more_cameras = {};
 };
 

@@ -15,8 +15,8 @@ namespace edged {
 struct KeyframePoint {
   FeatureId id = 0;
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< on the unit plane of the camera
-  double inverse_depth = 0.0;                       ///< of z there [1/m]
-  double sigma = 0.0;                               ///< of inverse_depth, from the best-conditioned observation
+  double inverse_depth = 0.0;                       ///< inverse z-depth there [1/m]
+  double sigma = 0.0;                               ///< sigma of inverse_depth, from the best-conditioned observation
 };
 
 /// The observations of one camera of the rig.

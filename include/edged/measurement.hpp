@@ -40,7 +40,7 @@ struct ImuSample {
   Timestamp t;                                        ///< IMU clock
   Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();   ///< angular velocity [rad/s]
   Eigen::Vector3d accel_B = Eigen::Vector3d::Zero();  ///< specific force [m/s^2], about +9.81 upwards at rest
-  bool made_up = false;                               ///< interpolated where the recording has a gap
+  bool interpolated = false;                          ///< interpolated where the recording has a gap
 };
 
 /// The height of the body above a level that drifts slowly: a barometer, or a range finder above flat ground.

@@ -30,9 +30,9 @@ enum class DistortionModel {
   OmniEquidistant   ///< Mei's sphere, then Kannala-Brandt on its plane: xi, k1..k4
 };
 
-inline constexpr std::size_t kMostLensCoefficients = 8;
+inline constexpr std::size_t kMaxLensCoefficients = 8;
 /// In the order of the model; those that it lacks are zero.
-using LensCoefficients = std::array<double, kMostLensCoefficients>;
+using LensCoefficients = std::array<double, kMaxLensCoefficients>;
 
 /// A camera of one of these models.
 /// Pixel coordinates have the centre of the top-left pixel at (0, 0); bearings lie on the unit plane z = 1.
@@ -67,10 +67,10 @@ class CameraModel {
 
   /// Angle off the axis up to which the lens is used [rad]; nothing where it is used in the whole image.
   std::optional<double> view_limit() const;
-  /// The same lens used up to that angle only, less than 86 degrees.
+  /// This lens used up to that angle only, less than 86 degrees.
   CameraModel within(double limit_rad) const;
 
-  /// The same lens of which only those pixels are used that are not 0, row by row: without parts of the vehicle in
+  /// This lens with only those pixels in use that are not 0, row by row: without parts of the vehicle in
   /// view, or beyond the circle that a lens draws. Throws InputError when it is of another size or leaves no pixel.
   CameraModel masked(const std::vector<std::uint8_t>& used) const;
   bool is_masked() const { return mask_.used != nullptr; }
@@ -141,7 +141,7 @@ std::string to_string(DistortionModel model);
 struct RigCamera {
   std::string name;
   Modality modality = Modality::Frames;
-  CameraModel model;                   ///< of the raw (distorted) image
+  CameraModel model;                   ///< model of the raw (distorted) image
   SE3 T_B_C;                           ///< camera frame to body: p_B = T_B_C * p_C
   Duration time_offset = Duration(0);  ///< t_imu = t_cam + time_offset
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// SO(3) and SE(3): exp, log, right Jacobians, adjoint. Right perturbation everywhere: R' = R * Exp(phi).
+// SO(3) and SE(3): exp, log, right Jacobian. Right perturbation everywhere: R' = R * Exp(phi).
 // A tangent of SE(3) is (rho, phi): translation first, then rotation. Formulas: Sola, Deray, Atchuthan,
 // "A micro Lie theory for state estimation in robotics" (2018), numbers in the comments are its equations.
 #pragma once
@@ -51,17 +51,10 @@ class SE3 {
   static SE3 exp(const Vector6d& xi);
   Vector6d log() const;
 
-  /// Ad_T with T * Exp(xi) = Exp(Ad_T xi) * T (Eq. 175).
-  Matrix6d adjoint() const;
-
  private:
   Eigen::Quaterniond q_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d p_ = Eigen::Vector3d::Zero();
 };
-
-/// Right Jacobian of SE(3) (Eq. 179, 180 with the sign of its argument turned) and its inverse.
-Matrix6d se3_right_jacobian(const Vector6d& xi);
-Matrix6d se3_right_jacobian_inverse(const Vector6d& xi);
 
 /// The pose at share a of the constant-twist motion from T_0 (a = 0) to T_1 (a = 1), paper Eq. 1 in its corrected form:
 /// T_0 * Exp(a * Log(T_0^-1 * T_1)). a may lie outside [0, 1].

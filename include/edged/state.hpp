@@ -37,7 +37,6 @@ struct StateCovariance {
   Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)
   Eigen::Matrix3d velocity;  ///< [m^2/s^2], in W
 };
-using PoseCovariance = StateCovariance;  // deprecated: the name of version 0.2
 
 /// The attitude of the body where no more is known: before the start of the estimator, by gyro and accelerometer. The
 /// heading is relative to the first measurement, and drifts.
@@ -51,7 +50,7 @@ using FeatureId = std::uint64_t;
 
 /// A point of the world that the estimator has placed by the observations of a feature.
 struct Landmark {
-  FeatureId id = 0;  ///< of the feature
+  FeatureId id = 0;  ///< id of the feature
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
@@ -60,7 +59,8 @@ struct LogScale {
   double value = 0.0, sigma = 0.0;
 };
 
-/// Gravity in W [m/s^2].
-inline const Eigen::Vector3d kGravity_W(0.0, 0.0, -9.81);
+/// Magnitude of gravity [m/s^2], and gravity in W.
+inline constexpr double kGravity = 9.81;
+inline const Eigen::Vector3d kGravity_W(0.0, 0.0, -kGravity);
 
 }  // namespace edged

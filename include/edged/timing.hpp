@@ -19,7 +19,7 @@ double thread_cpu_s();
 class StageTiming {
  public:
   void add(double seconds, std::optional<double> cpu_seconds = std::nullopt);
-  /// Of calls that were added without.
+  /// Adds processor time of calls that were added without it.
   void add_cpu(double seconds) { cpu_s_ = cpu_s_.value_or(0.0) + seconds; }
   std::uint64_t count() const { return count_; }
   double mean_s() const { return count_ == 0 ? 0.0 : total_s_ / static_cast<double>(count_); }
@@ -57,9 +57,9 @@ class StageTimings {
     std::optional<double> cpu_start_s_;
   };
 
-  /// Of this thread, in both kinds of time.
+  /// Measures this thread in both kinds of time.
   [[nodiscard]] Scope measure(const std::string& stage) { return {timing_of(stage), true}; }
-  /// Without processor time, which costs a system call: for what is entered thousands of times a second.
+  /// Measures without processor time, which costs a system call: for what is entered thousands of times a second.
   [[nodiscard]] Scope measure_often(const std::string& stage) { return {timing_of(stage), false}; }
   /// Adds a stage that the caller has measured.
   void put(const std::string& stage, const StageTiming& timing) { timing_of(stage) = timing; }

@@ -14,7 +14,7 @@ __all__: list[str]
 EVENT: np.dtype[np.void]
 """t [ns], x, y [px], p (brighter): the library's own 16 bytes."""
 IMU: np.dtype[np.void]
-"""t [ns], gyro [rad/s], accel [m/s^2], made_up (interpolated where the recording has a gap)."""
+"""t [ns], gyro [rad/s], accel [m/s^2], interpolated (interpolated where the recording has a gap)."""
 POSE: np.dtype[np.void]
 """t [ns], position [m], quaternion x, y, z, w."""
 

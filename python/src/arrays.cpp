@@ -89,7 +89,7 @@ const py::dtype& dtype_of<ImuSample>() {
   static const py::dtype& dtype = kept(make_dtype({{"t", "<i8", place(&ImuSample::t)},
                                                    {"gyro", "(3,)<f8", place(&ImuSample::gyro_B)},
                                                    {"accel", "(3,)<f8", place(&ImuSample::accel_B)},
-                                                   {"made_up", "?", place(&ImuSample::made_up)}},
+                                                   {"interpolated", "?", place(&ImuSample::interpolated)}},
                                                   sizeof(ImuSample)));
   return dtype;
 }
@@ -170,7 +170,7 @@ ImuSample imu_sample(const void* data, std::size_t i) {
   std::memcpy(&sample.t, row + place(&ImuSample::t), sizeof sample.t);
   std::memcpy(sample.gyro_B.data(), row + place(&ImuSample::gyro_B), sizeof sample.gyro_B);
   std::memcpy(sample.accel_B.data(), row + place(&ImuSample::accel_B), sizeof sample.accel_B);
-  sample.made_up = row[place(&ImuSample::made_up)] != 0;
+  sample.interpolated = row[place(&ImuSample::interpolated)] != 0;
   return sample;
 }
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "edged/camera/lens_table.hpp"
-#include "edged/core/angles.hpp"
+#include "edged/camera/tuning.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -21,20 +21,12 @@ using Eigen::Vector2d;
 constexpr int kMaxNewtonSteps = 30;
 constexpr double kNewtonTolerance = 1e-13;    // on the unit plane, relative to 1 + the radius
 constexpr double kRoundTripTolerance = 1e-6;  // [px], of the pixels tried on construction
-constexpr double kUnitPlaneEnds = 89.0 * kDegree;
-// [deg] off the axis. A lens that reaches more than the first angle is used only up to the second: a pixel at 70
-// degrees is 4.4 times as long on the unit plane as on the axis, at 80 degrees 12 times.
-constexpr double kWidest = 86.0 * kDegree, kUsedOfWider = 70.0 * kDegree;
-constexpr double kScanStep = 0.05 * kDegree;
-// A lens that turns back before the corners: how steep it must be, relative to the axis, where it is used, and how much
-// of the image that must leave. A wrong order of the coefficients leaves less.
-constexpr double kLeastSlope = 0.25, kLeastShare = 0.75;
 
 /// Radius in the distorted image of an angle off the axis, without what is not symmetric.
-Sloped radius_at(const LensModel& lens, const LensCoefficients& k, double theta) {
-  const Sloped first = lens.radius_of_angle(k, theta);
+ValueAndSlope radius_at(const LensModel& lens, const LensCoefficients& k, double theta) {
+  const ValueAndSlope first = lens.radius_of_angle(k, theta);
   if (!lens.radius_of_radius) return first;
-  const Sloped second = lens.radius_of_radius(k, first.value);
+  const ValueAndSlope second = lens.radius_of_radius(k, first.value);
   return {second.value, second.slope * first.slope};
 }
 
@@ -42,10 +34,10 @@ Sloped radius_at(const LensModel& lens, const LensCoefficients& k, double theta)
 /// where the projection of a lens is no longer defined.
 double growing_range(const LensModel& lens, const LensCoefficients& k, double least_slope = 0.0) {
   double theta = 0.0, reached = 0.0;
-  while (theta + kScanStep < std::numbers::pi) {
-    const Sloped next = radius_at(lens, k, theta + kScanStep);
+  while (theta + kCameraTuning.scan_step < std::numbers::pi) {
+    const ValueAndSlope next = radius_at(lens, k, theta + kCameraTuning.scan_step);
     if (!(next.slope > least_slope && next.value > reached)) break;
-    theta += kScanStep;
+    theta += kCameraTuning.scan_step;
     reached = next.value;
   }
   return theta;
@@ -59,7 +51,7 @@ double invert_growing(const Function& function, double target, double upper) {
   double low = 0.0, high = upper;
   double x = std::min(target, upper);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const Sloped at = function(x);
+    const ValueAndSlope at = function(x);
     (at.value < target ? low : high) = x;
     double next = x + (target - at.value) / at.slope;
     if (!(next >= low && next <= high)) next = 0.5 * (low + high);
@@ -108,7 +100,7 @@ Vector2d undistort_on_plane(const LensModel& lens, const LensCoefficients& k, co
 
 /// "k1 k2 ..." of a lens, in numbers.
 std::string numbers_of(const LensModel& lens, const LensCoefficients& k) {
-  return fmt::format("{}", fmt::join(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.most), " "));
+  return fmt::format("{}", fmt::join(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.max_coefficients), " "));
 }
 
 }  // namespace
@@ -130,9 +122,10 @@ CameraModel::CameraModel(int width, int height, double fx, double fy, double cx,
       throw InputError::format("distortion coefficient {} is {}: must be finite", i + 1, k_[i]);
   }
   const LensModel& lens = lens_model(distortion);
-  if (std::any_of(k_.begin() + static_cast<std::ptrdiff_t>(lens.most), k_.end(), [](double k) { return k != 0.0; })) {
+  if (std::any_of(k_.begin() + static_cast<std::ptrdiff_t>(lens.max_coefficients), k_.end(),
+                  [](double k) { return k != 0.0; })) {
     throw InputError::format("distortion '{}' with coefficients {}: it has {}", lens.name, fmt::join(k_, " "),
-                             lens.most == 0 ? "none" : fmt::format("only {}", lens.coefficients));
+                             lens.max_coefficients == 0 ? "none" : fmt::format("only {}", lens.coefficients));
   }
   mean_focal_ = 0.5 * (fx_ + fy_) * (lens.radius_of_angle ? lens.radius_of_angle(k_, 0.0).slope : 1.0);
   find_monotone_range();
@@ -151,16 +144,16 @@ void CameraModel::find_monotone_range() {
   }
   const LensModel& lens = lens_model(distortion_);
   if (lens.radius_of_angle) max_theta_ = growing_range(lens, k_);
-  if (max_theta_ > kWidest && corner_radius > radius_at(lens, k_, kWidest).value) {
-    limit_ = kUsedOfWider;
+  if (max_theta_ > kCameraTuning.widest && corner_radius > radius_at(lens, k_, kCameraTuning.widest).value) {
+    limit_ = kCameraTuning.used_of_wider;
     max_radius_ = std::tan(limit_);
     return;
   }
   double reached = 0.0;
   double theta = 0.0;
-  for (; theta <= kUnitPlaneEnds; theta += kScanStep) {
+  for (; theta <= kCameraTuning.unit_plane_end; theta += kCameraTuning.scan_step) {
     const double radius = std::tan(theta);
-    const Sloped at = lens.radius_of_angle ? radius_at(lens, k_, theta) : lens.radius_of_radius(k_, radius);
+    const ValueAndSlope at = lens.radius_of_angle ? radius_at(lens, k_, theta) : lens.radius_of_radius(k_, radius);
     if (!(at.slope > 0.0 && at.value >= reached)) break;
     reached = at.value;
     max_radius_ = radius;
@@ -183,7 +176,8 @@ std::optional<double> CameraModel::limit_before_turn() const {
   if (!lens.radius_of_angle) return std::nullopt;
   const double axis_slope = radius_at(lens, k_, 0.0).slope;
   if (!(axis_slope > 0.0)) return std::nullopt;
-  const double limit = std::min(growing_range(lens, k_, kLeastSlope * axis_slope), kWidest - kScanStep);
+  const double limit = std::min(growing_range(lens, k_, kCameraTuning.min_slope * axis_slope),
+                                kCameraTuning.widest - kCameraTuning.scan_step);
   const double reached = radius_at(lens, k_, limit).value;
   constexpr int kPerSide = 40;
   int within = 0;
@@ -192,7 +186,7 @@ std::optional<double> CameraModel::limit_before_turn() const {
       const double x = (column + 0.5) / kPerSide * width_ - 0.5, y = (row + 0.5) / kPerSide * height_ - 0.5;
       within += std::hypot((x - cx_) / fx_, (y - cy_) / fy_) <= reached ? 1 : 0;
     }
-  return within >= kLeastShare * kPerSide * kPerSide ? std::optional(limit) : std::nullopt;
+  return within >= kCameraTuning.min_share * kPerSide * kPerSide ? std::optional(limit) : std::nullopt;
 }
 
 void CameraModel::check_border() const {
@@ -242,9 +236,9 @@ Vector2d CameraModel::pixel_to_point(const Vector2d& pixel) const {
 std::optional<double> CameraModel::view_limit() const { return limit_ > 0.0 ? std::optional(limit_) : std::nullopt; }
 
 CameraModel CameraModel::within(double limit_rad) const {
-  if (!(limit_rad > 0.0 && limit_rad < kWidest))
+  if (!(limit_rad > 0.0 && limit_rad < kCameraTuning.widest))
     throw InputError::format("the view limit of a lens must be above 0 and below {:.0f} degrees off its axis, not {:g}",
-                             kWidest / kDegree, limit_rad / kDegree);
+                             kCameraTuning.widest / kDegree, limit_rad / kDegree);
   CameraModel narrower = *this;
   narrower.limit_ = std::min(limit_rad, lens_model(distortion_).radius_of_angle ? max_theta_ : std::atan(max_radius_));
   narrower.max_radius_ = std::tan(narrower.limit_);

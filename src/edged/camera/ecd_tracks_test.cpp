@@ -122,7 +122,7 @@ Agreement agreement(const Tracks& tracks, const Trajectory& poses, const CameraM
     if (!point) continue;
     ++result.used_tracks;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      const auto pixel = camera.project(views[i].T_W_C.inverse() * point->p_W);
+      const auto pixel = camera.project(views[i].T_A_C.inverse() * point->p_A);
       errors.push_back(pixel ? (*pixel - pixels[i]).norm() : 1e9);
     }
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "edged/camera/tuning.hpp"
 #include "edged/core/directions.hpp"
 
 namespace edged {
@@ -56,8 +57,7 @@ bool is_same_lens(const RigCamera& a, const RigCamera& b) {
 }
 
 bool have_baseline(const RigCamera& a, const RigCamera& b) {
-  constexpr double kLeast_m = 0.01;
-  return (a.T_B_C.translation() - b.T_B_C.translation()).norm() >= kLeast_m;
+  return (a.T_B_C.translation() - b.T_B_C.translation()).norm() >= kCameraTuning.min_baseline_m;
 }
 
 }  // namespace edged

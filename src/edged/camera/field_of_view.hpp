@@ -23,7 +23,7 @@ double axis_slope(const CameraModel& camera);
 /// The share of the image of `a`, 0 to 1, whose points `b` sees, too, if all are at that distance from `a` [m].
 double shared_view(const RigCamera& a, const RigCamera& b, double distance_m);
 
-/// Of a DAVIS, whose lens gives events and frames.
+/// Whether two cameras are behind one lens, as in a DAVIS, whose lens gives events and frames.
 bool is_same_lens(const RigCamera& a, const RigCamera& b);
 
 /// Whether they are far enough apart, 1 cm, to see depth together. An event camera and a frame camera that are nearer

@@ -61,7 +61,7 @@ ByIntrinsics point_by_intrinsics(const CameraModel& given, const CameraModel& mo
 }
 
 int corrected_coefficients(const CameraModel& camera) {
-  return std::min(kCorrectedCoefficients, static_cast<int>(lens_model(camera.distortion()).most));
+  return std::min(kCorrectedCoefficients, static_cast<int>(lens_model(camera.distortion()).max_coefficients));
 }
 
 Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, const Eigen::Vector2d& point) {

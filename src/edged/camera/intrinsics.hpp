@@ -30,7 +30,7 @@ Eigen::Vector2d point_by(const CameraModel& model, const CameraModel& given, con
 /// The model with corrections; nothing where no lens has them, such as a distortion that is not monotone.
 std::optional<CameraModel> corrected_model(const CameraModel& given, const IntrinsicsCorrection& correction);
 
-/// Of an image that shows what a lens sees, such as an undistorted one: its model where the lens has corrections. A
+/// The model of an image that shows what a lens sees, such as an undistorted one, where the lens has corrections. A
 /// radtan fit to the points of its pixels, to a pixel at the corners of corrections of 1 %. Nothing where no lens has
 /// them.
 std::optional<CameraModel> corrected_image_model(const CameraModel& image, const CameraModel& given,

@@ -28,7 +28,7 @@ TEST(Intrinsics, DerivativeOfDistortionByItsCoefficientsMatchesDifferences) {
     if (lens.model == DistortionModel::None) continue;
     for (const Eigen::Vector2d& point : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.3, -0.2)}) {
       const ByCoefficients by = lens.by_coefficients(camera.coefficients(), point);
-      for (std::size_t i = 0; i < lens.most; ++i) {
+      for (std::size_t i = 0; i < lens.max_coefficients; ++i) {
         constexpr double kStep = 1e-5;
         LensCoefficients more = camera.coefficients(), less = more;
         more[i] += kStep, less[i] -= kStep;

@@ -110,7 +110,7 @@ double end_of(DistortionModel model, const LensCoefficients& k) {
   const LensModel& lens = lens_model(model);
   double theta = 0.0, reached = 0.0;
   for (; theta < 3.14; theta += 1e-4) {
-    const Sloped at = lens.radius_of_angle(k, theta);
+    const ValueAndSlope at = lens.radius_of_angle(k, theta);
     if (!(at.slope > 0.0 && at.value >= reached)) break;
     reached = at.value;
   }

@@ -18,7 +18,8 @@
 namespace edged {
 namespace {
 
-constexpr LensModel kNoDistortion{.model = DistortionModel::None, .name = "none", .coefficients = "", .also = {"no"}};
+constexpr LensModel kNoDistortion{
+    .model = DistortionModel::None, .name = "none", .coefficients = "", .aliases = {"no"}};
 
 constexpr std::array kLensModels{kNoDistortion, kRadTan,       kEquidistant,     kRational,       kFieldOfView,
                                  kOmni,         kDoubleSphere, kExtendedUnified, kOmniEquidistant};
@@ -35,7 +36,7 @@ const LensModel& lens_model(DistortionModel model) {
 
 const LensModel* find_lens_model(std::string_view name) {
   const auto found = std::ranges::find_if(kLensModels, [name](const LensModel& lens) {
-    return lens.name == name || (!name.empty() && std::ranges::find(lens.also, name) != lens.also.end());
+    return lens.name == name || (!name.empty() && std::ranges::find(lens.aliases, name) != lens.aliases.end());
   });
   return found == kLensModels.end() ? nullptr : &*found;
 }
@@ -62,7 +63,7 @@ Distorted distorted(const LensModel& lens, const LensCoefficients& k, const Eige
   Distorted out{p, Eigen::Matrix2d::Identity()};
   if (lens.radius_of_angle) {
     const double r = p.norm();
-    const Sloped of_angle = lens.radius_of_angle(k, std::atan(r));
+    const ValueAndSlope of_angle = lens.radius_of_angle(k, std::atan(r));
     out = moved_to_radius(p, {of_angle.value, of_angle.slope / (1.0 + r * r)});
   }
   if (!lens.distort) return out;

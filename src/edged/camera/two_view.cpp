@@ -24,14 +24,14 @@ std::optional<Vector3d> nearest_point(std::span<const Ray> rays) {
   Matrix3d H = Matrix3d::Zero();
   Vector3d b = Vector3d::Zero();
   for (const Ray& ray : rays) {
-    const Matrix3d across = Matrix3d::Identity() - ray.direction_W * ray.direction_W.transpose();
+    const Matrix3d across = Matrix3d::Identity() - ray.direction_A * ray.direction_A.transpose();
     H += across;
-    b += across * ray.centre_W;
+    b += across * ray.centre_A;
   }
   const Eigen::LDLT<Matrix3d> factor(H);
-  const Vector3d p_W = factor.solve(b);
-  if (factor.info() != Eigen::Success || !p_W.allFinite()) return std::nullopt;
-  return p_W;
+  const Vector3d p_A = factor.solve(b);
+  if (factor.info() != Eigen::Success || !p_A.allFinite()) return std::nullopt;
+  return p_A;
 }
 
 /// Sum of the squared unit-plane residuals and the Gauss-Newton system H step = b of it (C7).
@@ -42,15 +42,15 @@ struct Linearised {
 };
 
 /// Nothing when the point is not in front of every view.
-std::optional<Linearised> linearise(std::span<const Ray> rays, const Vector3d& p_W) {
+std::optional<Linearised> linearise(std::span<const Ray> rays, const Vector3d& p_A) {
   Linearised sum;
   for (const Ray& ray : rays) {
-    const Vector3d p_C = ray.R_C_W * (p_W - ray.centre_W);
+    const Vector3d p_C = ray.R_C_A * (p_A - ray.centre_A);
     if (!(p_C.z() > kMinDepth)) return std::nullopt;
     const double inverse_z = 1.0 / p_C.z();
     const Vector2d seen = p_C.head<2>() * inverse_z;
     const Vector2d residual = seen - ray.point;
-    const Eigen::Matrix<double, 2, 3> J = inverse_z * (ray.R_C_W.topRows<2>() - seen * ray.R_C_W.bottomRows<1>());
+    const Eigen::Matrix<double, 2, 3> J = inverse_z * (ray.R_C_A.topRows<2>() - seen * ray.R_C_A.bottomRows<1>());
     sum.squared_sum += residual.squaredNorm();
     sum.H += J.transpose() * J;
     sum.b -= J.transpose() * residual;
@@ -61,15 +61,15 @@ std::optional<Linearised> linearise(std::span<const Ray> rays, const Vector3d& p
 }  // namespace
 
 Ray ray_of(const View& view) {
-  const Matrix3d R_W_C = view.T_W_C.R();
-  return {R_W_C.transpose(), view.T_W_C.translation(), view.point, (R_W_C * view.point.homogeneous()).normalized()};
+  const Matrix3d R_A_C = view.T_A_C.R();
+  return {R_A_C.transpose(), view.T_A_C.translation(), view.point, (R_A_C * view.point.homogeneous()).normalized()};
 }
 
 double largest_angle(std::span<const Ray> rays) {
   double chord2 = 0.0;  // between unit vectors: grows with the angle and keeps its digits where it is small
   for (std::size_t i = 0; i < rays.size(); ++i) {
     for (std::size_t j = i + 1; j < rays.size(); ++j) {
-      chord2 = std::max(chord2, (rays[i].direction_W - rays[j].direction_W).squaredNorm());
+      chord2 = std::max(chord2, (rays[i].direction_A - rays[j].direction_A).squaredNorm());
     }
   }
   return 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(chord2)));
@@ -88,8 +88,8 @@ std::optional<TriangulatedPoint> triangulate(std::span<const Ray> rays, double p
   std::optional<Vector3d> start = nearest_point(rays);
   if (!start) return std::nullopt;
 
-  Vector3d p_W = *start;
-  std::optional<Linearised> at = linearise(rays, p_W);
+  Vector3d p_A = *start;
+  std::optional<Linearised> at = linearise(rays, p_A);
   if (!at) return std::nullopt;
   double damping = 0.0;
   for (int i = 0; i < kMaxIterations; ++i) {
@@ -97,20 +97,20 @@ std::optional<TriangulatedPoint> triangulate(std::span<const Ray> rays, double p
     H.diagonal() *= 1.0 + damping;
     const Vector3d step = H.ldlt().solve(at->b);
     if (!step.allFinite()) return std::nullopt;
-    const std::optional<Linearised> next = linearise(rays, p_W + step);
+    const std::optional<Linearised> next = linearise(rays, p_A + step);
     if (!next || next->squared_sum > at->squared_sum) {
-      if (step.norm() < 1e-9 * p_W.norm()) break;
+      if (step.norm() < 1e-9 * p_A.norm()) break;
       damping = damping == 0.0 ? 1e-3 : 10.0 * damping;
       continue;
     }
-    p_W += step;
+    p_A += step;
     const bool converged = at->squared_sum - next->squared_sum <= 1e-12 * at->squared_sum;
     at = next;
     damping *= 0.1;
     if (converged) break;
   }
   const double rms = std::sqrt(at->squared_sum / (2.0 * static_cast<double>(rays.size())));
-  return TriangulatedPoint{p_W, parallax, rms};
+  return TriangulatedPoint{p_A, parallax, rms};
 }
 
 double ray_angle(const Vector2d& point_1, const Matrix3d& R_1_2, const Vector2d& point_2) {

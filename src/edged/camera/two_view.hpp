@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Geometry between views: triangulation and its quality.
+// Geometry between views: triangulation and its quality, in any frame A that the poses share.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,22 +13,22 @@ namespace edged {
 
 /// One observation of a point: the pose of the camera and the point on its unit plane.
 struct View {
-  SE3 T_W_C;
+  SE3 T_A_C;
   Eigen::Vector2d point;
 };
 
 struct TriangulatedPoint {
-  Eigen::Vector3d p_W;
+  Eigen::Vector3d p_A;
   double parallax = 0.0;      ///< largest angle between any two of its rays [rad]
   double rms_residual = 0.0;  ///< per coordinate, on the unit plane
 };
 
 /// A view made ready for triangulation.
 struct Ray {
-  Eigen::Matrix3d R_C_W;
-  Eigen::Vector3d centre_W;     ///< of the camera
+  Eigen::Matrix3d R_C_A;
+  Eigen::Vector3d centre_A;     ///< centre of the camera
   Eigen::Vector2d point;        ///< on its unit plane
-  Eigen::Vector3d direction_W;  ///< of the point, unit length
+  Eigen::Vector3d direction_A;  ///< direction of the point, unit length
 };
 
 Ray ray_of(const View& view);
@@ -40,7 +40,7 @@ double largest_angle(std::span<const Ray> rays);
 /// there are fewer than two views, the parallax is below min_parallax [rad], or the point is not in front of all views.
 std::optional<TriangulatedPoint> triangulate(std::span<const View> views, double min_parallax = 1e-3);
 
-/// The same for two or more rays whose largest angle is known.
+/// Triangulates two or more rays whose largest angle is known.
 std::optional<TriangulatedPoint> triangulate(std::span<const Ray> rays, double parallax);
 
 /// Angle between two rays given on unit planes, after rotating the second by R_1_2 into the first camera's frame [rad].

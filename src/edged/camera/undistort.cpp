@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "edged/camera/tuning.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
 namespace {
-
-// Half a side of the pinhole of a lens with a view_limit, on the unit plane: 120 degrees across. More would leave too
-// few pixels to its middle.
-constexpr double kWidestPinhole = std::numbers::sqrt3;
 
 /// The ideal camera without what the raw one's mask ignores.
 CameraModel masked_as(const CameraModel& ideal, const CameraModel& raw) {
@@ -44,8 +40,8 @@ CameraModel ideal_pinhole(const CameraModel& raw) {
     bottom = std::min(bottom, raw.pixel_to_point({x, bottom_px}).y());
   }
   if (raw.view_limit()) {
-    left = std::max(left, -kWidestPinhole), right = std::min(right, kWidestPinhole);
-    top = std::max(top, -kWidestPinhole), bottom = std::min(bottom, kWidestPinhole);
+    left = std::max(left, -kCameraTuning.widest_pinhole), right = std::min(right, kCameraTuning.widest_pinhole);
+    top = std::max(top, -kCameraTuning.widest_pinhole), bottom = std::min(bottom, kCameraTuning.widest_pinhole);
   }
   const double fx = right_px / (right - left), fy = bottom_px / (bottom - top);
   if (!(std::isfinite(fx) && std::isfinite(fy) && fx > 0.0 && fy > 0.0)) {

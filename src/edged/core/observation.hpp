@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Observations of features, the input of the estimator.
+// Observations of features and of depth, the input of the estimator.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,6 +22,16 @@ struct FeatureObservation {
 struct CameraObservations {
   std::string camera;
   std::vector<FeatureObservation> features;
+};
+
+/// The depth of a region of one camera's view at the time of a packet, from a depth source (paper Eq. 5). The source
+/// must not have it from the landmarks.
+struct RegionDepth {
+  std::string camera;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  ///< region on the unit plane
+  double depth_m = 0.0;                                                           ///< median z-depth
+  double sigma_ln = 0.0;   ///< sigma of ln depth_m, with the scale error of the source
+  double spread_ln = 0.0;  ///< spread of ln depth within the region
 };
 
 }  // namespace edged

@@ -10,25 +10,6 @@ namespace {
 // Below this angle [rad] the closed forms lose digits and their series are used instead.
 constexpr double kSmallAngle = 1e-4;
 
-/// The coupling block Q of the left SE(3) Jacobian (Sola Eq. 180).
-Eigen::Matrix3d left_jacobian_coupling(const Eigen::Vector3d& rho, const Eigen::Vector3d& phi) {
-  const double theta2 = phi.squaredNorm();
-  const double theta = std::sqrt(theta2);
-  const Eigen::Matrix3d P = skew(rho);
-  const Eigen::Matrix3d F = skew(phi);
-  double a = 1.0 / 6.0 - theta2 / 120.0;     // (theta - sin) / theta^3
-  double b = 1.0 / 24.0 - theta2 / 720.0;    // -(1 - theta^2/2 - cos) / theta^4
-  double c = 1.0 / 120.0 - theta2 / 2520.0;  // half of b minus three times the next series term
-  if (theta > 1e-2) {
-    const double s = std::sin(theta), co = std::cos(theta);
-    a = (theta - s) / (theta2 * theta);
-    b = (theta2 / 2.0 + co - 1.0) / (theta2 * theta2);
-    c = 0.5 * (b + 3.0 * (theta - s - theta2 * theta / 6.0) / (theta2 * theta2 * theta));
-  }
-  return 0.5 * P + a * (F * P + P * F + F * P * F) + b * (F * F * P + P * F * F - 3.0 * F * P * F) +
-         c * (F * P * F * F + F * F * P * F);
-}
-
 }  // namespace
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
@@ -103,34 +84,6 @@ Vector6d SE3::log() const {
   const Eigen::Vector3d phi = so3::log(q_);
   xi << so3::right_jacobian_inverse(-phi) * p_, phi;
   return xi;
-}
-
-Matrix6d SE3::adjoint() const {
-  const Eigen::Matrix3d rotation = R();
-  Matrix6d ad = Matrix6d::Zero();
-  ad.topLeftCorner<3, 3>() = rotation;
-  ad.bottomRightCorner<3, 3>() = rotation;
-  ad.topRightCorner<3, 3>() = skew(p_) * rotation;
-  return ad;
-}
-
-Matrix6d se3_right_jacobian(const Vector6d& xi) {
-  const Eigen::Vector3d rho = -xi.head<3>();
-  const Eigen::Vector3d phi = -xi.tail<3>();
-  Matrix6d J = Matrix6d::Zero();
-  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = so3::right_jacobian(-phi);
-  J.topRightCorner<3, 3>() = left_jacobian_coupling(rho, phi);
-  return J;
-}
-
-Matrix6d se3_right_jacobian_inverse(const Vector6d& xi) {
-  const Eigen::Vector3d rho = -xi.head<3>();
-  const Eigen::Vector3d phi = -xi.tail<3>();
-  const Eigen::Matrix3d J_inv = so3::right_jacobian_inverse(-phi);
-  Matrix6d J = Matrix6d::Zero();
-  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = J_inv;
-  J.topRightCorner<3, 3>() = -J_inv * left_jacobian_coupling(rho, phi) * J_inv;
-  return J;
 }
 
 SE3 interpolate(const SE3& T_0, const SE3& T_1, double a) { return T_0 * SE3::exp(a * (T_0.inverse() * T_1).log()); }

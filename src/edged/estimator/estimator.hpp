@@ -10,6 +10,7 @@
 #include "edged/core/odom_state.hpp"
 #include "edged/estimator/external/external_factors.hpp"
 #include "edged/estimator/initialization/initializer.hpp"
+#include "edged/estimator/solver/sliding.hpp"
 #include "edged/estimator/standstill/standstill.hpp"
 #include "edged/estimator/window/depth_terms.hpp"
 #include "edged/estimator/window/estimator_input.hpp"
@@ -18,18 +19,14 @@
 
 namespace edged {
 
-/// Of sigmas, events alone, times that of the options: dynamic objects mislead them more easily.
-inline constexpr double kEventsAloneInflation = 1.4;
-
 struct EstimatorResult {
   std::string waiting_for;          ///< while not initialised: what is missing, with numbers
-  std::vector<FeatureId> outliers;  ///< outlier tracks, which should end
+  std::vector<FeatureId> outliers;  ///< tracks that should end
   std::string started;              ///< the estimator has started with this input: how, with numbers
   std::vector<Landmark> landmarks;  ///< in the cost
-  int landmarks_seen = 0;           ///< of them, observed by the newest state
-  double imu_strain = 0.0;          ///< of the window: see imu_strain() [sigma]
-  std::vector<KeyframeRecord>
-      marginalized_keyframes;  ///< keyframes that were marginalized with this input, in its frame
+  int landmarks_seen = 0;           ///< landmarks that the newest state observes
+  double imu_strain = 0.0;          ///< see imu_strain() [sigma]
+  std::vector<MarginalizedKeyframe> marginalized_keyframes;  ///< with this input
   bool standstill = false;
   bool velocity_observed = false;  ///< the velocity was measured recently, by an external sensor
   bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
@@ -39,26 +36,27 @@ struct EstimatorResult {
 
 class Estimator {
  public:
-  /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock.
-  /// Known from an earlier start: intrinsics, corrections of each camera, or none; biases, those of the IMU.
+  /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock. `intrinsics` (corrections
+  /// of each camera, or none) and `biases` (of the IMU) are known from an earlier start.
   Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
             std::vector<IntrinsicsCorrection> intrinsics = {}, const std::optional<BiasPrior>& biases = {});
 
-  /// Inputs in time order.
+  /// Takes the next input; inputs come in time order.
   EstimatorResult add(const EstimatorInput& input);
 
   bool initialized() const { return initialized_; }
   /// The initialization is used, but its scale is not known to init_scale_sigma yet, or no later one has confirmed it:
   /// initializations on a dynamic object seldom agree on the velocity.
-  bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !agreed_; }
+  bool provisional() const { return scale_sigma_ > config_.init_scale_sigma || !confirmed_; }
   /// The newest state; meaningful once initialised.
   OdomState newest() const { return window_.newest().nav(); }
   /// Gyro bias known so far (zero at first) [rad/s].
   Eigen::Vector3d gyro_bias() const;
 
-  /// Of the newest state: see covariance() of a window; inflated to be consistent. Nothing before initialization.
+  /// Covariance of the newest state (see covariance() of a window), inflated to be consistent. Nothing before
+  /// initialization.
   std::optional<Matrix15d> covariance() const;
-  /// Of the calibration correction of a camera (CalibrationBlock); inflated in the same way.
+  /// Covariance of the calibration correction of a camera (CalibrationBlock), inflated in the same way.
   std::optional<CalibrationCovariance> calibration_covariance(std::size_t camera) const;
 
   /// z-depth of a landmark in a camera at the newest state [m].
@@ -71,14 +69,15 @@ class Estimator {
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
+  void adopt(StartWindow start, EstimatorResult& result);
   void update_scale(const EstimatorInput& input);
   Preintegration since_newest(const EstimatorInput& input) const;
-  bool rests_by_image() const;
+  bool stationary_by_vision() const;
   void append(const EstimatorInput& input);
-  bool take_depth(const EstimatorInput& input);
+  bool add_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise(double imu_strain);
-  std::vector<KeyframeRecord> slide();
+  std::vector<MarginalizedKeyframe> slide();
 
   ImuNoise noise_;
   EstimatorConfig config_;
@@ -88,10 +87,10 @@ class Estimator {
   Initializer initializer_;
   std::vector<IntrinsicsCorrection> known_intrinsics_;
   bool initialized_ = false;
-  double scale_sigma_ = kFree;   ///< of ln scale
-  bool sees_landmarks_ = false;  ///< the newest state
-  bool agreed_ = false;          ///< two initializations agree, or nothing has contradicted one until agreed_by_itself_
-  Timestamp agreed_by_itself_;
+  double scale_sigma_ = kFree;      ///< sigma of ln scale
+  bool landmarks_in_view_ = false;  ///< the newest state observes some
+  bool confirmed_ = false;          ///< two initializations agree, or none has contradicted one until confirmed_at_
+  Timestamp confirmed_at_;
   LogScale depth_scale_;
 };
 

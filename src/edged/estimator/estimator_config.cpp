@@ -51,9 +51,9 @@ void CalibrationConfig::visit(ConfigFields& fields) {
       {"deg", 0.001, 10,
        "Prior uncertainty of the rotation between a camera and the first one of its kind, and between the first event "
        "camera and the first frame camera."});
-  fields.add(
-      "baseline_sigma_mm", baseline_sigma_mm,
-      {"mm", 0, 500, "The same of the position. 0: neither it nor the rotation between them is known beforehand."});
+  fields.add("baseline_sigma_mm", baseline_sigma_mm,
+             {"mm", 0, 500,
+              "Prior uncertainty of the position between them. 0: neither it nor the rotation is known beforehand."});
   fields.add("imu_sigma", imu_sigma,
              {"1", 0, 0.1,
               "Prior uncertainty of scale factors and axis misalignment of gyroscope and accelerometer. 0 keeps them "
@@ -67,8 +67,7 @@ void TrackNoise::visit(ConfigFields& fields) {
   fields.add(
       "event_correlation", event_correlation,
       {"1", 0, 0.999,
-       "The same in event frames. A higher value is more accurate in static scenes but rejects slow objects less."});
-  fields.add("time_s", time_s, {"s", 0.01, 1000, "The correlation falls to 1/e of its value after this time."});
+       "Correlation in event frames. A higher value is more accurate in static scenes but rejects slow objects less."});
 }
 
 void EstimatorConfig::visit(ConfigFields& fields) {
@@ -78,30 +77,17 @@ void EstimatorConfig::visit(ConfigFields& fields) {
   fields.add("max_interval_s", max_interval_s,
              {"s", 0.2, 10, "A state becomes a keyframe after this time in any case."});
   fields.add("iterations", iterations, {"", 1, 50, "Solver iterations per packet."});
-  fields.add("cauchy_scale", cauchy_scale,
-             {"sigma", 0.1, 100, "Visual residuals beyond this are down-weighted (Cauchy loss)."});
-  fields.add("gyro_bias_sigma", gyro_bias_sigma,
-             {"rad/s", 1e-5, 1, "Prior uncertainty of the gyroscope bias at a start in motion."});
-  fields.add("accel_bias_sigma", accel_bias_sigma,
-             {"m/s^2", 1e-4, 5, "Prior uncertainty of the accelerometer bias around zero."});
-  fields.add("init_max_views", init_max_views, {"", 5, 60, "A start in motion uses at most this many views."});
-  fields.add("init_max_span_s", init_max_span_s,
-             {"s", 0.5, 60, "A start in motion uses at most the views of this time."});
   fields.add(
       "init_scale_sigma", init_scale_sigma,
       {"", 0.01, 1, "A start in motion is Good once the relative standard deviation of the scale is below this."});
   fields.add("provisional_scale_sigma", provisional_scale_sigma,
              {"", 0.01, 1, "A start below this is used with status Degraded, and refined."});
-  fields.add("noise_gain", noise_gain,
-             {"", 0, 1, "Weight of a packet when each camera's noise adapts to its residuals. 0: fixed noise."});
   fields.add("noise_inflation", noise_inflation,
              {"", 0.5, 20, "Assumed noise relative to the spread of new residuals."});
   fields.add(
       "event_noise_inflation", event_noise_inflation,
       {"", 0.5, 20,
        "Further factor on the noise of event cameras used beside frame cameras, unless these are far less accurate."});
-  fields.add("max_imu_strain", max_imu_strain,
-             {"sigma", 0.01, 100, "Cameras are down-weighted when the IMU residuals of the window exceed this."});
   fields.add(
       "sigma_inflation", sigma_inflation,
       {"", 0.1, 100, "Reported standard deviations relative to those of the window. Events alone: 1.4 times this."});

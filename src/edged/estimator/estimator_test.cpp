@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "edged/core/angles.hpp"
 #include "edged/estimator/test_world.hpp"
 
 namespace edged {
@@ -27,10 +28,9 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
   SE3 T_true_est;
   double travelled = 0.0, estimated = 0.0;
   Eigen::Vector3d last_true = Eigen::Vector3d::Zero(), last_estimated = Eigen::Vector3d::Zero();
-  constexpr double kStep = 0.05;
-  for (int i = 1; i * kStep <= duration; ++i) {
-    const double t = i * kStep;
-    const EstimatorResult output = estimator.add(world.packet(t, kStep, i % 4 == 0));
+  for (int i = 1; i * kPacket_s <= duration; ++i) {
+    const double t = i * kPacket_s;
+    const EstimatorResult output = estimator.add(world.packet(t, kPacket_s, i % 4 == 0));
     result.waiting_for = output.waiting_for;
     if (!estimator.initialized()) continue;
     const OdomState state = estimator.newest();
@@ -38,10 +38,7 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     if (!result.initialized) {
       result.initialized = true;
       result.started_at = t;
-      // Yaw and position are not observable: aligned at the start.
-      const Eigen::Matrix3d R = truth.R() * state.T_O_B.R().transpose();
-      const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());
-      T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * state.T_O_B.translation());
+      T_true_est = alignment_at(truth, state.T_O_B);  // yaw and position are not observable
     } else {
       travelled += (truth.translation() - last_true).norm();
       estimated += (state.T_O_B.translation() - last_estimated).norm();
@@ -55,12 +52,12 @@ RunResult run(const TestWorldOptions& options, double duration, const EstimatorC
     result.bias_gyro = state.bias_gyro;
     result.bias_accel = state.bias_accel;
   }
-  result.camera = estimator.window().calibrated(0);
+  result.camera = estimator.window().cameras()[0].calibrated();
   result.travelled_ratio = travelled > 0 ? estimated / travelled : 0.0;
   return result;
 }
 
-/// Of the observations of the newest state [on the unit plane].
+/// Mean sigma of the observations of the newest state, on the unit plane.
 double mean_sigma(const Window& window) {
   double sum = 0.0;
   int n = 0;
@@ -76,12 +73,11 @@ double mean_sigma(const Window& window) {
 TEST(Estimator, BelievesCornersLessWhileTheGyroIsBeyondItsRange) {
   TestWorld world({.rest_s = 1.0});
   Estimator estimator(world.rig(), world.noise(), {});
-  constexpr double kStep = 0.05;
   int i = 1;
-  for (; i * kStep < 2.0; ++i) estimator.add(world.packet(i * kStep, kStep, i % 4 == 0));
+  for (; i * kPacket_s < 2.0; ++i) estimator.add(world.packet(i * kPacket_s, kPacket_s, i % 4 == 0));
   const double usual = mean_sigma(estimator.window());
   ASSERT_GT(usual, 0.0);
-  EstimatorInput clipped = world.packet(i * kStep, kStep, false);
+  EstimatorInput clipped = world.packet(i * kPacket_s, kPacket_s, false);
   std::vector<ImuSample> samples = clipped.motion.samples();
   samples[samples.size() / 2].gyro_B.x() = world.noise().gyro_saturation;
   clipped.motion = Preintegration(samples, clipped.motion.bias_gyro(), clipped.motion.bias_accel(), world.noise());
@@ -128,14 +124,13 @@ TEST(Estimator, StartsInMotionAndFindsScaleAndGravity) {
 }
 
 TEST(Estimator, LeavesOfAKeyframeWhatTheWindowLearntOfIt) {
-  constexpr double kStep = 0.05;
   TestWorld world({.rest_s = 1.0, .cameras = 2});
   Estimator estimator(world.rig(), world.noise(), {});
   std::size_t keyframes = 0, seen = 0, left = 0;
   double depth_error = 0.0, depth_sigma = 0.0;
-  for (int i = 1; i * kStep <= 8.0; ++i) {
-    for (const KeyframeRecord& record :
-         estimator.add(world.packet(i * kStep, kStep, i % 4 == 0)).marginalized_keyframes) {
+  for (int i = 1; i * kPacket_s <= 8.0; ++i) {
+    for (const MarginalizedKeyframe& record :
+         estimator.add(world.packet(i * kPacket_s, kPacket_s, i % 4 == 0)).marginalized_keyframes) {
       const double t = to_seconds(record.t);
       if (t < 3.0) continue;  // at rest no depth is known
       ++keyframes;
@@ -177,7 +172,6 @@ EstimatorConfig self_calibrating() {
 }
 
 TEST(Estimator, FindsWhatTheCamerasRotationAndClockAreOffBy) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     for (const double sign : {1.0, -1.0}) {
       TestWorldOptions options{.rest_s = seed == 1 ? 1.0 : 0.0, .turn = 1.5, .tempo = 2.0, .seed = seed};
@@ -216,7 +210,7 @@ TEST(Estimator, LeavesAnExactCalibrationWhereItIs) {
   EXPECT_LT(std::abs(to_seconds(found.time_offset)), 5e-4);
 }
 
-/// Of a lens with distortion, its lever arm and intrinsics off.
+/// A world whose lens has distortion, with wrong lever arm and intrinsics.
 TestWorldOptions miscalibrated(std::uint64_t seed) {
   TestWorldOptions options{.rest_s = 1.0, .turn = 2.0, .tempo = 2.0, .pixel_noise = 0.1, .seed = seed};
   options.distortion = {-0.37, 0.15, -3e-4, -7e-4, 0.0};
@@ -294,7 +288,7 @@ TEST(Estimator, LeavesAnExactCalibrationInMotionThatShowsPartOfIt) {
   }
 }
 
-/// Of the velocity in the body frame, over seeds and time: mean square error over reported variance, and RMS error.
+/// Errors of the velocity in the body frame, over seeds and time: mean square over reported variance, and RMS.
 struct VelocityErrors {
   double nees = 0.0, rms = 0.0;
 };

@@ -27,20 +27,20 @@ struct TestWorldOptions {
   double tempo = 1.0;                ///< speed factor of the motion
   double turn_only_s = 0.0;          ///< no translation before this, at full speed a second later
   double near_m = 1.5, far_m = 4.0;  ///< heights of the points over the origin
-  Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< of scale and axes: measured = (I + E) true + bias
+  Eigen::Matrix3d gyro_error = Eigen::Matrix3d::Zero();  ///< scale and axes: measured = (I + E) true + bias
   double pixel_noise = 0.5;                              ///< [px]
   double frames_noise = 1.0;                             ///< times pixel_noise, on frames
   double pixel_walk = 0.0;                               ///< [px/sqrt(s)] how fast tracks drift from their points
   double imu_noise = 1.0;                                ///< times the densities of ImuNoise
   Eigen::Vector3d bias_gyro = {0.01, -0.02, 0.015};
   Eigen::Vector3d bias_accel = {0.05, -0.08, 0.06};
-  Eigen::Vector3d rotation_error = {0, 0, 0};   ///< of the cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
-  Eigen::Vector3d lever_arm_error = {0, 0, 0};  ///< of the cameras: t_B_C true = t_B_C of rig() + error [m]
+  Eigen::Vector3d rotation_error = {0, 0, 0};   ///< cameras: R_B_C true = R_B_C of rig() * Exp(error) [rad]
+  Eigen::Vector3d lever_arm_error = {0, 0, 0};  ///< cameras: t_B_C true = t_B_C of rig() + error [m]
   IntrinsicsCorrection intrinsics_error = IntrinsicsCorrection::Zero();  ///< true = rig() corrected by it
-  LensCoefficients distortion = {};  ///< of the first camera: radtan, if it is not zero
-  double time_error = 0.0;           ///< images are taken so long after their stamp [s]
-  int walker = 0;                    ///< number of the 120 features on a dynamic object of half a metre that passes by
-  double walker_comes_s = 0.0;       ///< when it enters the view
+  LensCoefficients distortion = {};                                      ///< first camera: radtan, if it is not zero
+  double time_error = 0.0;      ///< images are taken so long after their stamp [s]
+  int walker = 0;               ///< number of the 120 features on a dynamic object of half a metre that passes by
+  double walker_comes_s = 0.0;  ///< when it enters the view
   std::uint64_t seed = 1;
 };
 
@@ -102,7 +102,7 @@ class TestWorld {
     return {timestamp_from_seconds(t), T_W_B(t).translation().z() + sigma * normal(), sigma};
   }
 
-  /// Of a sensor in the body's axes and place.
+  /// Measures with a sensor in the body's axes and place.
   VelocitySample velocity(double t, double sigma) {
     return {timestamp_from_seconds(t), T_W_B(t).R().transpose() * v_W(t) + sigma * normal3(),
             Eigen::Vector3d::Constant(sigma)};
@@ -216,6 +216,20 @@ class TestWorld {
   std::optional<ImuSample> last_imu_;
 };
 
+/// A keyframe at the true pose and velocity.
+inline WindowState true_state(const TestWorld& world, double t, const Eigen::Vector3d& bias_gyro = {0, 0, 0},
+                              const Eigen::Vector3d& bias_accel = {0, 0, 0}) {
+  return window_state({timestamp_from_seconds(t), world.T_W_B(t), world.v_W(t), bias_gyro, bias_accel},
+                      Eigen::Vector3d::Zero(), {}, true);
+}
+
+/// The yaw and shift that take an estimate, in a frame of its own, to the truth at one instant.
+inline SE3 alignment_at(const SE3& truth, const SE3& estimate) {
+  const Eigen::Matrix3d R = truth.R() * estimate.R().transpose();
+  const Eigen::Quaterniond yaw = so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))});
+  return {yaw, truth.translation() - yaw * estimate.translation()};
+}
+
 /// T_W_B of a state becomes T_W_B * (Exp(turn), shift).
 inline void displace(Window& window, StateId id, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift) {
   Vector6d step;
@@ -235,17 +249,13 @@ enum class Gauge { Held, Free };
 
 /// Four states, their IMU factors, a gauge and initial priors: a problem that is nearly linear close to its solution.
 inline Window inertial_window(TestWorld& world, Gauge gauge = Gauge::Held) {
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   for (int i = 0; i < 4; ++i) {
     const double t = 0.1 * i;
     std::vector<ImuSample> samples;
     for (int k = 0; k <= 20 && i > 0; ++k) samples.push_back(world.imu(t - 0.1 + 0.005 * k));
-    WindowState state;
-    state.t = timestamp_from_seconds(t);
-    state.pose = to_block(world.T_W_B(t));
-    Eigen::Map<Eigen::Vector3d>(state.motion.data()) = world.v_W(t);
+    WindowState state = true_state(world, t);
     if (i > 0) state.imu = Preintegration(samples, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), world.noise());
-    state.keyframe = true;
     window.add_state(std::move(state));
   }
   if (gauge == Gauge::Held) {
@@ -263,17 +273,14 @@ inline Window inertial_window(TestWorld& world, Gauge gauge = Gauge::Held) {
 inline constexpr double kTrackedPeriod_s = 0.2;
 
 /// Keyframes at the true poses, velocities and biases, with IMU and observations; the gauge is fixed.
-inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, int states = 6) {
-  Window window(world.rig(), 1.0);
+inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, int states = 6,
+                             const TrackNoise& noise = {0.0, 0.0}) {
+  Window window(world.rig(), noise);
   world.packet(1.0 - kTrackedPeriod_s, kTrackedPeriod_s, true);
   for (int i = 0; i < states; ++i) {
     const double t = 1.0 + kTrackedPeriod_s * i;
     const EstimatorInput input = world.packet(t, kTrackedPeriod_s, true);
-    WindowState state;
-    state.t = input.t;
-    state.pose = to_block(world.T_W_B(t));
-    Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world.v_W(t), options.bias_gyro, options.bias_accel;
-    state.keyframe = true;
+    WindowState state = true_state(world, t, options.bias_gyro, options.bias_accel);
     if (i > 0) state.imu = input.motion.reintegrated(options.bias_gyro, options.bias_accel);
     window.add_state(std::move(state), input.observations);
   }
@@ -281,5 +288,14 @@ inline Window tracked_window(TestWorld& world, const TestWorldOptions& options, 
   window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, 1e-4, 1e-4));
   return window;
 }
+
+/// A world and its tracked window.
+struct Tracked {
+  explicit Tracked(const TestWorldOptions& of_world = {}, int states = 6, const TrackNoise& noise = {0.0, 0.0})
+      : options(of_world), world(options), window(tracked_window(world, options, states, noise)) {}
+  TestWorldOptions options;
+  TestWorld world;
+  Window window;
+};
 
 }  // namespace edged

@@ -13,6 +13,16 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
+/// Constants that were chosen (docs/decisions/022-imu-damage.md).
+struct ImuTuning {
+  double jump_share = 0.3;                               ///< share of a jump beyond the usual that is uncertain
+  double usual_gyro_jump = 1.0, usual_accel_jump = 4.0;  ///< [rad/s], [m/s^2] between two samples of a body in flight
+  /// Process noise in a gap, where the motion is assumed to continue: rates of 1.5 rad/s and accelerations of 5 m/s^2
+  /// that last for 0.1 s, as densities [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)].
+  double gap_gyro_noise = 0.7, gap_accel_noise = 2.2;
+};
+constexpr ImuTuning kImuTuning{};
+
 ImuSample interpolate_samples(const ImuSample& a, const ImuSample& b, Timestamp t) {
   const double span = to_seconds(b.t - a.t);
   const double share = span > 0.0 ? to_seconds(t - a.t) / span : 0.0;
@@ -33,14 +43,8 @@ bool out_of_range(const Vector3d& a, const Vector3d& b, double limit) {
 /// Between two samples far apart the signal does not follow the integrated straight line: the vibration after a knock
 /// is faster than the sample rate. Standard deviation of the mean over the step; 0 for the jumps of a body in flight.
 double sigma_of_jump(const Vector3d& a, const Vector3d& b, double usual) {
-  constexpr double kShare = 0.3;  // of the jump
-  return kShare * std::max(0.0, (b - a).norm() - usual);
+  return kImuTuning.jump_share * std::max(0.0, (b - a).norm() - usual);
 }
-constexpr double kUsualGyroJump = 1.0, kUsualAccelJump = 4.0;  // [rad/s], [m/s^2]
-
-/// Process noise in a gap, where the motion is assumed to continue: rates of 1.5 rad/s and accelerations of 5 m/s^2
-/// that last for 0.1 s, as densities. [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)]
-constexpr double kGapGyroNoise = 0.7, kGapAccelNoise = 2.2;
 
 double density(double noise, bool gap, double gap_noise, bool clipped, double inflation) {
   return gap ? std::max(noise, gap_noise) : noise * (clipped ? inflation : 1.0);
@@ -80,7 +84,9 @@ Matrix9d next_covariance(const Matrix9d& covariance, const StepJacobians& step, 
 
 }  // namespace
 
-bool in_gap(const ImuSample& a, const ImuSample& b) { return a.made_up || b.made_up || b.t - a.t > kMaxSampleInterval; }
+bool in_gap(const ImuSample& a, const ImuSample& b) {
+  return a.interpolated || b.interpolated || b.t - a.t > kMaxSampleInterval;
+}
 
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1) {
   EDGED_CHECK(t_0 <= t_1, "slice from {} to {} ns", to_ns(t_0), to_ns(t_1));
@@ -145,13 +151,13 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   const bool gyro_clipped = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
   const bool accel_clipped = out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
   const double inflation = noise_.saturation_inflation;
-  const double gyro_sigma = density(noise_.gyro_noise, gap, kGapGyroNoise, gyro_clipped, inflation);
-  const double accel_sigma = density(noise_.accel_noise, gap, kGapAccelNoise, accel_clipped, inflation);
-  saturated_ = saturated_ || gap || gyro_clipped || accel_clipped;
+  const double gyro_sigma = density(noise_.gyro_noise, gap, kImuTuning.gap_gyro_noise, gyro_clipped, inflation);
+  const double accel_sigma = density(noise_.accel_noise, gap, kImuTuning.gap_accel_noise, accel_clipped, inflation);
   gyro_clipped_ = gyro_clipped_ || gyro_clipped;
   gapped_ = gapped_ || gap;
-  const double gyro_jump = gap || gyro_clipped ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kUsualGyroJump);
-  const double accel_jump = gap || accel_clipped ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kUsualAccelJump);
+  const double gyro_jump = gap || gyro_clipped ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kImuTuning.usual_gyro_jump);
+  const double accel_jump =
+      gap || accel_clipped ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kImuTuning.usual_accel_jump);
   covariance_ = next_covariance(covariance_, step, gyro_sigma * gyro_sigma / dt + gyro_jump * gyro_jump,
                                 accel_sigma * accel_sigma / dt + accel_jump * accel_jump);
 }

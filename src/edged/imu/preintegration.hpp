@@ -21,7 +21,7 @@ using Matrix15d = Eigen::Matrix<double, 15, 15>;
 /// Two samples farther apart than this have little information on the motion between them.
 inline constexpr Duration kMaxSampleInterval = std::chrono::milliseconds(30);
 
-/// Whether the step between two samples lies in a gap of the recording, wholly or in part: it counts as saturated.
+/// Whether the step between two samples lies in a gap of the recording, wholly or in part.
 bool in_gap(const ImuSample& a, const ImuSample& b);
 
 /// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as interpolated
@@ -66,13 +66,11 @@ class Preintegration {
   const Eigen::Matrix3d& d_dp_d_bg() const { return d_dp_d_bg_; }
   const Eigen::Matrix3d& d_dp_d_ba() const { return d_dp_d_ba_; }
 
-  const Matrix9d& covariance() const { return covariance_; }  ///< of (d_phi, d_v, d_p) from the white noise
+  const Matrix9d& covariance() const { return covariance_; }  ///< covariance of (d_phi, d_v, d_p) by the white noise
   const ImuNoise& noise() const { return noise_; }
-  /// Some sample reached the range of the sensor, or samples were missing (kMaxSampleInterval).
-  bool saturated() const { return saturated_; }
-  /// Some sample reached the gyro's range: the rotation is known from the cameras alone.
+  /// Whether some sample reached the gyro's range: the rotation is known from the cameras alone.
   bool gyro_clipped() const { return gyro_clipped_; }
-  /// False where it was clipped, or samples were missing.
+  /// Whether no sample was clipped or missing (kMaxSampleInterval).
   bool gyro_trusted() const { return !gyro_clipped_ && !gapped_; }
 
  private:
@@ -89,7 +87,7 @@ class Preintegration {
                   d_dv_d_ba_ = Eigen::Matrix3d::Zero(), d_dp_d_bg_ = Eigen::Matrix3d::Zero(),
                   d_dp_d_ba_ = Eigen::Matrix3d::Zero();
   Matrix9d covariance_ = Matrix9d::Zero();
-  bool saturated_ = false, gyro_clipped_ = false, gapped_ = false;
+  bool gyro_clipped_ = false, gapped_ = false;
 };
 
 /// The state at the last sample, from the state at the first. Biases are unchanged.

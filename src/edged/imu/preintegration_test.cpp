@@ -94,7 +94,7 @@ struct MotionError {
   double attitude, velocity, position;
 };
 
-/// Of the state predicted for the end of the second that begins at t = 0.3 s.
+/// Error of the state predicted for the end of the second that begins at t = 0.3 s.
 MotionError propagation_error(const Motion& motion, Duration interval) {
   const Preintegration integrated(motion.samples(0.3, 1.3, interval), kNoBias, kNoBias, {});
   const OdomState end = propagate(motion.state(0.3), integrated);
@@ -229,18 +229,18 @@ TEST(Preintegration, TrustsSaturatedSamplesLess) {
   const ImuNoise noise{.gyro_saturation = 20.0, .accel_saturation = 100.0, .saturation_inflation = 50.0};
   std::vector<ImuSample> samples = helix().samples(0.0, 0.1, kMillisecond);
   const Preintegration normal(samples, kNoBias, kNoBias, noise);
-  EXPECT_FALSE(normal.saturated());
+  EXPECT_TRUE(normal.gyro_trusted());
 
   samples[50].gyro_B.x() = -20.0;
   const Preintegration gyro(samples, kNoBias, kNoBias, noise);
-  EXPECT_TRUE(gyro.saturated() && gyro.gyro_clipped());
+  EXPECT_TRUE(gyro.gyro_clipped() && !gyro.gyro_trusted());
   // 98 steps as before, the two that touch the sample with 50^2 times the variance.
   EXPECT_NEAR(gyro.covariance()(0, 0) / normal.covariance()(0, 0), (98.0 + 2.0 * 2500.0) / 100.0, 0.5);
 
   samples[50].gyro_B.x() = 0.0;
   samples[50].accel_B.z() = 157.0;
   const Preintegration accel(samples, kNoBias, kNoBias, noise);
-  EXPECT_TRUE(accel.saturated() && !accel.gyro_clipped());
+  EXPECT_TRUE(accel.gyro_trusted());
   EXPECT_DOUBLE_EQ(accel.covariance()(0, 0), normal.covariance()(0, 0));
   EXPECT_NEAR(accel.covariance()(5, 5) / normal.covariance()(5, 5), (98.0 + 2.0 * 2500.0) / 100.0, 0.5);
 }
@@ -353,13 +353,13 @@ TEST(SliceImu, DoesNotPassOffAsMeasuredWhatItMakesUpInAGap) {
   for (const int ms : {0, 5, 10, 310, 315, 320}) {
     samples.push_back({Timestamp(ms * kMillisecond), Vector3d(0, 0, 0.5), Vector3d(0, 0, 9.81)});
   }
-  const auto saturated = [&](int from_ms, int to_ms) {
+  const auto bridged = [&](int from_ms, int to_ms) {
     const auto slice = slice_imu(samples, Timestamp(from_ms * kMillisecond), Timestamp(to_ms * kMillisecond));
-    return Preintegration(slice, kNoBias, kNoBias, {}).saturated();
+    return !Preintegration(slice, kNoBias, kNoBias, {}).gyro_trusted();
   };
-  EXPECT_FALSE(saturated(2, 10));
-  for (int ms = 5; ms < 310; ms += 15) EXPECT_TRUE(saturated(ms, ms + 15)) << ms << " ms";
-  EXPECT_FALSE(saturated(310, 318));
+  EXPECT_FALSE(bridged(2, 10));
+  for (int ms = 5; ms < 310; ms += 15) EXPECT_TRUE(bridged(ms, ms + 15)) << ms << " ms";
+  EXPECT_FALSE(bridged(310, 318));
 }
 
 TEST(SliceImu, RefusesWhatTheSamplesDoNotCover) {

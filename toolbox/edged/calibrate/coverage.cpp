@@ -90,7 +90,7 @@ MissingViews missing_views(const TargetViews& camera, const LensFit& fit, const 
             coverage.tilt_x < coverage.tilt_y ? "the horizontal axis of the image" : "the vertical axis of the image"));
   // With a projection of its own (omni, ds, eucm), fx trades against its coefficients.
   const DistortionModel lens = fit.lens.distortion;
-  if (lens == DistortionModel::OmniEquidistant || lens_model(lens).of_projection > 0) return out;
+  if (lens == DistortionModel::OmniEquidistant || lens_model(lens).projection_parameters > 0) return out;
   const double focal = fit.sigmas[0] / fit.lens.values[0];
   judge(focal > kWorstFocal, focal > 0.3 * kWorstFocal,
         fmt::format("camera {}: the focal length is uncertain by {:.2f} %; record more views, nearer to the target",

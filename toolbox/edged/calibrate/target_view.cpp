@@ -16,7 +16,7 @@ LensCoefficients FreeLens::coefficients() const {
 
 int FreeLens::count() const {
   const LensModel& model = lens_model(distortion);
-  return 4 + static_cast<int>(distortion == DistortionModel::RadTan ? model.fewest : model.most);
+  return 4 + static_cast<int>(distortion == DistortionModel::RadTan ? model.min_coefficients : model.max_coefficients);
 }
 
 CameraModel FreeLens::model(int width, int height) const {

@@ -33,7 +33,7 @@ struct TargetViews {
 };
 
 /// fx, fy, cx, cy, then the coefficients of the lens in their order.
-inline constexpr int kLensParameters = 4 + static_cast<int>(kMostLensCoefficients);
+inline constexpr int kLensParameters = 4 + static_cast<int>(kMaxLensCoefficients);
 using LensParameters = std::array<double, kLensParameters>;
 
 /// A lens while it is estimated: without the checks of CameraModel, which refuses what is not monotone over the image.

@@ -114,7 +114,7 @@ void SimulatedCameraConfig::visit(ConfigFields& fields) {
   fields.add("cy", cy, {"px", 0, 4096, "principal point"});
   std::vector<std::pair<std::string_view, DistortionModel>> lenses;
   for (const LensModel& lens : lens_models())
-    if (lens.most > 0) lenses.emplace_back(lens.name, lens.model);
+    if (lens.max_coefficients > 0) lenses.emplace_back(lens.name, lens.model);
   fields.choice("distortion", distortion, lenses,
                 {.effect = "the model of the lens: it takes the coefficients below that it has"});
   for (const Coefficient& k : kCoefficients) fields.add(k.name, this->*k.value, k.doc);

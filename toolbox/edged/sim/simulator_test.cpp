@@ -211,7 +211,7 @@ TEST(Simulator, GroundTruthIsTheBodyOnTheClockOfTheImu) {
 
 TEST(Simulator, HasACameraOfEveryLensModelThatIsUsedInTheWholeImage) {
   for (const LensModel& lens : lens_models()) {
-    if (lens.most == 0) continue;
+    if (lens.max_coefficients == 0) continue;
     SimulatorConfig config = small("room", 1.0);
     ConfigFields::of(config).set("camera.distortion=" + std::string(lens.name));
     const CameraModel model = config.camera.model();

@@ -10,7 +10,7 @@
 namespace edged {
 
 /// Coefficients: xi alpha.
-inline Sloped double_sphere_radius(const LensCoefficients& k, double theta) {
+inline ValueAndSlope double_sphere_radius(const LensCoefficients& k, double theta) {
   const double s = std::sin(theta), c = std::cos(theta), shifted = k[0] + c, second = std::hypot(s, shifted);
   const double depth = k[1] * second + (1.0 - k[1]) * shifted;
   return {s / depth, (c * depth + s * s * (k[1] * k[0] / second + 1.0 - k[1])) / (depth * depth)};
@@ -26,10 +26,10 @@ inline ByCoefficients double_sphere_by_coefficients(const LensCoefficients& k, c
 inline constexpr LensModel kDoubleSphere{.model = DistortionModel::DoubleSphere,
                                          .name = "ds",
                                          .coefficients = "xi alpha",
-                                         .fewest = 2,
-                                         .most = 2,
-                                         .of_projection = 2,
-                                         .also = {"double_sphere"},
+                                         .min_coefficients = 2,
+                                         .max_coefficients = 2,
+                                         .projection_parameters = 2,
+                                         .aliases = {"double_sphere"},
                                          .radius_of_angle = double_sphere_radius,
                                          .by_coefficients = double_sphere_by_coefficients};
 

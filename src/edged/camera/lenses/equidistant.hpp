@@ -9,7 +9,7 @@
 
 namespace edged {
 
-inline Sloped equidistant_radius(const LensCoefficients& k, double theta) {
+inline ValueAndSlope equidistant_radius(const LensCoefficients& k, double theta) {
   const double t2 = theta * theta;
   return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
           1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
@@ -23,9 +23,9 @@ inline ByCoefficients equidistant_by_coefficients(const LensCoefficients&, const
 inline constexpr LensModel kEquidistant{.model = DistortionModel::Equidistant,
                                         .name = "equidistant",
                                         .coefficients = "k1 k2 k3 k4",
-                                        .fewest = 4,
-                                        .most = 4,
-                                        .also = {"fisheye", "kannala_brandt", "kb4"},
+                                        .min_coefficients = 4,
+                                        .max_coefficients = 4,
+                                        .aliases = {"fisheye", "kannala_brandt", "kb4"},
                                         .ros = "equidistant",
                                         .foxglove = "kannala_brandt",
                                         .radius_of_angle = equidistant_radius,

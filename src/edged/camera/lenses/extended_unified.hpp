@@ -10,7 +10,7 @@
 namespace edged {
 
 /// Coefficients: alpha beta.
-inline Sloped extended_unified_radius(const LensCoefficients& k, double theta) {
+inline ValueAndSlope extended_unified_radius(const LensCoefficients& k, double theta) {
   const double s = std::sin(theta), c = std::cos(theta), root = std::sqrt(k[1] * s * s + c * c);
   const double depth = k[0] * root + (1.0 - k[0]) * c, d_depth = s * (k[0] * c * (k[1] - 1.0) / root - (1.0 - k[0]));
   return {s / depth, (c * depth - s * d_depth) / (depth * depth)};
@@ -26,9 +26,9 @@ inline ByCoefficients extended_unified_by_coefficients(const LensCoefficients& k
 inline constexpr LensModel kExtendedUnified{.model = DistortionModel::ExtendedUnified,
                                             .name = "eucm",
                                             .coefficients = "alpha beta",
-                                            .fewest = 2,
-                                            .most = 2,
-                                            .of_projection = 2,
+                                            .min_coefficients = 2,
+                                            .max_coefficients = 2,
+                                            .projection_parameters = 2,
                                             .radius_of_angle = extended_unified_radius,
                                             .by_coefficients = extended_unified_by_coefficients};
 

@@ -9,7 +9,7 @@
 
 namespace edged {
 
-inline Sloped fov_radius(const LensCoefficients& k, double theta) {
+inline ValueAndSlope fov_radius(const LensCoefficients& k, double theta) {
   const double s = std::sin(theta), c = std::cos(theta), w = k[0], scale = 2.0 * std::tan(0.5 * w);
   if (w == 0.0) return {s / c, 1.0 / (c * c)};  // the limit
   return {std::atan2(scale * s, c) / w, scale / w / (c * c + scale * scale * s * s)};
@@ -26,8 +26,8 @@ inline ByCoefficients fov_by_coefficients(const LensCoefficients& k, const Eigen
 inline constexpr LensModel kFieldOfView{.model = DistortionModel::FieldOfView,
                                         .name = "fov",
                                         .coefficients = "w",
-                                        .fewest = 1,
-                                        .most = 1,
+                                        .min_coefficients = 1,
+                                        .max_coefficients = 1,
                                         .radius_of_angle = fov_radius,
                                         .by_coefficients = fov_by_coefficients};
 

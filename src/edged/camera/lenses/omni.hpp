@@ -10,14 +10,14 @@
 namespace edged {
 
 /// The sphere alone. Coefficients: xi k1 k2 p1 p2.
-inline Sloped omni_radius(const LensCoefficients& k, double theta) {
+inline ValueAndSlope omni_radius(const LensCoefficients& k, double theta) {
   const double c = std::cos(theta), depth = c + k[0];
   return {std::sin(theta) / depth, (1.0 + k[0] * c) / (depth * depth)};
 }
 
 inline LensCoefficients omni_brown(const LensCoefficients& k) { return {k[1], k[2], k[3], k[4]}; }
 
-inline Sloped omni_brown_radius(const LensCoefficients& k, double r) { return radtan_radius(omni_brown(k), r); }
+inline ValueAndSlope omni_brown_radius(const LensCoefficients& k, double r) { return radtan_radius(omni_brown(k), r); }
 
 inline Distorted distort_omni(const LensCoefficients& k, const Eigen::Vector2d& p) {
   return distort_radtan(omni_brown(k), p);
@@ -35,10 +35,10 @@ inline ByCoefficients omni_by_coefficients(const LensCoefficients& k, const Eige
 inline constexpr LensModel kOmni{.model = DistortionModel::Omni,
                                  .name = "omni",
                                  .coefficients = "xi [k1 k2 p1 p2]",
-                                 .fewest = 1,
-                                 .most = 5,
-                                 .of_projection = 1,
-                                 .also = {"mei"},
+                                 .min_coefficients = 1,
+                                 .max_coefficients = 5,
+                                 .projection_parameters = 1,
+                                 .aliases = {"mei"},
                                  .radius_of_angle = omni_radius,
                                  .radius_of_radius = omni_brown_radius,
                                  .distort = distort_omni,

@@ -11,8 +11,8 @@
 namespace edged {
 
 /// The polynomial, of a radius on the plane of the sphere. Coefficients of the lens: xi k1 k2 k3 k4.
-inline Sloped omni_equidistant_radius(const LensCoefficients& k, double r) {
-  const Sloped of_angle = equidistant_radius({k[1], k[2], k[3], k[4]}, std::atan(r));
+inline ValueAndSlope omni_equidistant_radius(const LensCoefficients& k, double r) {
+  const ValueAndSlope of_angle = equidistant_radius({k[1], k[2], k[3], k[4]}, std::atan(r));
   return {of_angle.value, of_angle.slope / (1.0 + r * r)};
 }
 
@@ -32,8 +32,8 @@ inline ByCoefficients omni_equidistant_by_coefficients(const LensCoefficients& k
 inline constexpr LensModel kOmniEquidistant{.model = DistortionModel::OmniEquidistant,
                                             .name = "omni-equidistant",
                                             .coefficients = "xi k1 k2 k3 k4",
-                                            .fewest = 5,
-                                            .most = 5,
+                                            .min_coefficients = 5,
+                                            .max_coefficients = 5,
                                             .radius_of_angle = omni_radius,
                                             .radius_of_radius = omni_equidistant_radius,
                                             .distort = distort_omni_equidistant,

@@ -23,7 +23,7 @@ inline Distorted distort_radtan(const LensCoefficients& k, const Eigen::Vector2d
 }
 
 /// (C2) without its tangential part.
-inline Sloped radtan_radius(const LensCoefficients& k, double r) {
+inline ValueAndSlope radtan_radius(const LensCoefficients& k, double r) {
   const double r2 = r * r;
   return {r * (1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))),
           1.0 + r2 * (3.0 * k[0] + r2 * (5.0 * k[1] + r2 * 7.0 * k[4]))};
@@ -40,9 +40,9 @@ inline ByCoefficients radtan_by_coefficients(const LensCoefficients&, const Eige
 inline constexpr LensModel kRadTan{.model = DistortionModel::RadTan,
                                    .name = "radtan",
                                    .coefficients = "k1 k2 p1 p2 [k3]",
-                                   .fewest = 4,
-                                   .most = 5,
-                                   .also = {"radial-tangential", "radialtangential", "plumb_bob"},
+                                   .min_coefficients = 4,
+                                   .max_coefficients = 5,
+                                   .aliases = {"radial-tangential", "radialtangential", "plumb_bob"},
                                    .ros = "plumb_bob",
                                    .foxglove = "plumb_bob",
                                    .radius_of_radius = radtan_radius,

@@ -29,7 +29,7 @@ std::string range_text(const FieldDoc& doc) {
   return "any";
 }
 
-/// Of a value that is set, or of one that the struct holds when its list is made.
+/// Checks a value that is set, or that the struct holds when its list is made.
 template <typename Number>
 void check_range(const std::string& key, Number value, const FieldDoc& doc) {
   if (static_cast<double>(value) >= doc.min && static_cast<double>(value) <= doc.max) return;

@@ -25,7 +25,7 @@ struct ExternalSensor {
   std::string_view name;                  ///< as in its files (NAME.txt), its flag (--NAME), its counters
   std::string_view what;                  ///< what it may be, for help texts
   std::vector<std::string_view> columns;  ///< what it measures
-  std::string_view unit;                  ///< of all columns: "m" or "m/s"
+  std::string_view unit;                  ///< unit of all columns: "m" or "m/s"
   double largest = 0.0;                   ///< largest absolute value that is accepted
   ExternalSample (*sample)(Timestamp t, const ExternalNumbers& numbers) = nullptr;
   ExternalNumbers (*numbers)(const ExternalSample& sample) = nullptr;

@@ -9,18 +9,12 @@
 #include "edged/estimator/factors/velocity_factor.hpp"
 #include "edged/estimator/solver/covariance.hpp"
 #include "edged/estimator/solver/sliding.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kGate = 4.0;         // [sigma], with the uncertainty of the window included
-constexpr double kStartGate = 10.0;   // [sigma], before an initialization is solved
-constexpr double kBiasSigma_m = 1e3;  // of the level of a height sensor before its first sample
-constexpr Duration kNewLevel =
-    std::chrono::milliseconds(1000);  // after this time of rejected heights the level is assumed to have changed
-constexpr Duration kObserved = std::chrono::milliseconds(500);  // time for which a velocity sample bounds the drift
-
-// Their places in ExternalSample.
+// Indices of the sensors in ExternalSample.
 constexpr std::size_t kHeight = 0, kVelocity = 1;
 
 Preintegration until(const Preintegration& imu, Timestamp t) {
@@ -49,14 +43,14 @@ std::optional<Evaluated> evaluated(const Window& window, const Factor& factor) {
 
 }  // namespace
 
-/// How far a measurement is from what the window expects. Its covariance is only asked where the measurement's own
-/// sigma does not explain the difference.
-bool ExternalFactors::believable(const Window& window, const Factor& factor) const {
+/// Chi-square test of a measurement against what the window expects. Its covariance is only computed where the
+/// measurement's own sigma does not explain the difference.
+bool ExternalFactors::passes_gate(const Window& window, const Factor& factor) const {
   const std::optional<Evaluated> found = evaluated(window, factor);
   if (!found) return false;
   const Eigen::VectorXd& r = found->r;
-  if (starting_) return r.norm() <= kStartGate;
-  if (r.norm() <= kGate) return true;
+  if (starting_) return r.norm() <= kExternalTuning.start_gate_sigma;
+  if (r.norm() <= kExternalTuning.gate_sigma) return true;
   const auto P = covariance(window, {factor.blocks().begin(), factor.blocks().end()});
   if (!P) return true;
   Eigen::MatrixXd J(r.size(), P->cols());  // blocks stand in the order of their keys
@@ -67,7 +61,7 @@ bool ExternalFactors::believable(const Window& window, const Factor& factor) con
     column += size;
   }
   const Eigen::MatrixXd S = Eigen::MatrixXd::Identity(r.size(), r.size()) + J * *P * J.transpose();
-  return r.dot(S.ldlt().solve(r)) <= kGate * kGate;
+  return r.dot(S.ldlt().solve(r)) <= kExternalTuning.gate_sigma * kExternalTuning.gate_sigma;
 }
 
 void ExternalFactors::add_to_start(Window& window, StateId from, const Preintegration& imu,
@@ -90,31 +84,31 @@ void ExternalFactors::add(Window& window, StateId from, const Preintegration& im
 
 void ExternalFactors::add_sample(Window& window, StateId from, const Preintegration& imu, const HeightSample& sample) {
   if (!height_.enabled) return;
-  const Preintegration way = until(imu, sample.t);
+  const Preintegration motion = until(imu, sample.t);
   const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : height_.sigma_m;
   const auto factor = [&](BlockKey bias) {
-    return std::make_shared<HeightFactor>(from, bias, way, sample.height_m, sigma);
+    return std::make_shared<HeightFactor>(from, bias, motion, sample.height_m, sigma);
   };
-  std::optional<BlockKey> bias = window.walking(BlockKind::HeightBias);
-  if (bias && believable(window, *factor(*bias))) {
+  std::optional<BlockKey> bias = window.parameter(BlockKind::HeightBias);
+  if (bias && passes_gate(window, *factor(*bias))) {
     height_refused_since_.reset();
     window.add(factor(*bias));
     ++counters_.used[kHeight];
     return;
   }
   if (bias && !height_refused_since_) height_refused_since_ = sample.t;
-  if (bias && sample.t - *height_refused_since_ < kNewLevel) {
+  if (bias && sample.t - *height_refused_since_ < kExternalTuning.new_level) {
     ++counters_.rejected[kHeight];
     return;
   }
   // The first sample, or the first accepted one after a step of the level.
-  if (bias) forget_walk(window, BlockKind::HeightBias);
+  if (bias) marginalize_parameter(window, BlockKind::HeightBias);
   height_refused_since_.reset();
   const WindowState& state = window.states().at(from);
-  const double level = HeightFactor(from, {BlockKind::HeightBias, 0}, way, sample.height_m, sigma)
+  const double level = HeightFactor(from, {BlockKind::HeightBias, 0}, motion, sample.height_m, sigma)
                            .bias_at(state.pose.data(), state.motion.data());
-  window.begin_walk(BlockKind::HeightBias, level, {kBiasSigma_m, height_.bias_walk});
-  window.add(factor(*window.walking(BlockKind::HeightBias)));
+  window.add_parameter(BlockKind::HeightBias, level, {kExternalTuning.level_sigma_m, height_.bias_walk});
+  window.add(factor(*window.parameter(BlockKind::HeightBias)));
   ++counters_.used[kHeight];
 }
 
@@ -123,11 +117,11 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   if (!velocity_.enabled || sample.sigma.array().isInf().all()) return;
   VelocitySample known = sample;
   for (double& sigma : known.sigma) sigma = sigma > 0.0 ? sigma : velocity_.sigma_mps;
-  if (!window.walking(BlockKind::VelocityScale))
-    window.begin_walk(BlockKind::VelocityScale, 0.0, {velocity_.scale_sigma, velocity_.scale_walk});
-  auto factor = std::make_shared<VelocityFactor>(from, *window.walking(BlockKind::VelocityScale), until(imu, sample.t),
-                                                 velocity_.T_B_S(), known);
-  if (!believable(window, *factor)) {
+  if (!window.parameter(BlockKind::VelocityScale))
+    window.add_parameter(BlockKind::VelocityScale, 0.0, {velocity_.scale_sigma, kExternalTuning.velocity_scale_walk});
+  auto factor = std::make_shared<VelocityFactor>(from, *window.parameter(BlockKind::VelocityScale),
+                                                 until(imu, sample.t), velocity_.T_B_S(), known);
+  if (!passes_gate(window, *factor)) {
     ++counters_.rejected[kVelocity];
     return;
   }
@@ -136,6 +130,8 @@ void ExternalFactors::add_sample(Window& window, StateId from, const Preintegrat
   velocity_at_ = sample.t;
 }
 
-bool ExternalFactors::velocity_observed(Timestamp t) const { return velocity_at_ && t - *velocity_at_ <= kObserved; }
+bool ExternalFactors::velocity_observed(Timestamp t) const {
+  return velocity_at_ && t - *velocity_at_ <= kExternalTuning.velocity_lasts;
+}
 
 }  // namespace edged

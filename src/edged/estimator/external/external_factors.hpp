@@ -20,7 +20,7 @@ class ExternalFactors {
   /// Puts samples of the IMU interval from a state on into the window, in time order. imu: that interval; samples
   /// outside it, and those that fail the gate, are dropped.
   void add(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
-  /// The same of a window that has not been solved yet: what is grossly wrong is left out.
+  /// As add(), to a window that has not been solved yet: only what is grossly wrong is left out.
   void add_to_start(Window& window, StateId from, const Preintegration& imu, std::span<const ExternalSample> samples);
 
   /// Whether a velocity sample from just before t is in the window.
@@ -30,7 +30,7 @@ class ExternalFactors {
   const ExternalCounters& counters() const { return counters_; }
 
  private:
-  bool believable(const Window& window, const Factor& factor) const;
+  bool passes_gate(const Window& window, const Factor& factor) const;
   void add_sample(Window& window, StateId from, const Preintegration& imu, const HeightSample& sample);
   void add_sample(Window& window, StateId from, const Preintegration& imu, const VelocitySample& sample);
 

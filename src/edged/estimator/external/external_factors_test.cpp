@@ -22,7 +22,7 @@ struct Flight {
   bool height = false, velocity = false;
   double blind_from = 5.0, blind_to = 13.0, end = 13.0;  ///< [s] without vision in between
   double level = 0.0, step = 0.0, step_at = 0.0;         ///< [m] of the height sensor
-  double scale = 1.0;                                    ///< of the velocity sensor
+  double scale = 1.0;                                    ///< scale of the velocity sensor
   double outliers = 0.0;                                 ///< share
   double gap_from = 0.0, gap_to = 0.0;                   ///< no samples
   int noise = 0;                                         ///< another number: other noise
@@ -32,7 +32,7 @@ struct Errors {
   double position = 0.0, height = 0.0;  ///< the largest since the start [m]
   double level = 0.0;                   ///< estimate of the height sensor, relative to the start of the body
   double scale = 0.0;                   ///< error of the estimated scale of the velocity sensor
-  double observed_share = 0.0;          ///< of the packets without vision
+  double observed_share = 0.0;          ///< share of the packets without vision
   bool plausible = true;
 };
 
@@ -78,20 +78,16 @@ Errors fly(const Flight& flight) {
     const EstimatorResult result = estimator.add(input);
     if (!estimator.initialized()) continue;
     const SE3 truth = world.T_W_B(t), estimate = estimator.newest().T_O_B;
-    if (!T_true_est) {
-      const Eigen::Matrix3d R = truth.R() * estimate.R().transpose();
-      const SE3 yaw(so3::exp({0, 0, std::atan2(R(1, 0), R(0, 0))}), Eigen::Vector3d::Zero());
-      T_true_est = SE3(yaw.rotation(), truth.translation() - yaw.rotation() * estimate.translation());
-    }
+    if (!T_true_est) T_true_est = alignment_at(truth, estimate);
     const Eigen::Vector3d error = (*T_true_est * estimate).translation() - truth.translation();
     errors.position = std::max(errors.position, error.norm());
     errors.height = std::max(errors.height, std::abs(error.z()));
     errors.plausible = errors.plausible && result.plausible;
     if (!sees) ++blind, observed += result.velocity_observed;
   }
-  const auto level = estimator.window().walking(BlockKind::HeightBias);
+  const auto level = estimator.window().parameter(BlockKind::HeightBias);
   if (level) errors.level = *estimator.window().block(*level) - T_true_est->translation().z();
-  const auto scale = estimator.window().walking(BlockKind::VelocityScale);
+  const auto scale = estimator.window().parameter(BlockKind::VelocityScale);
   if (scale) errors.scale = *estimator.window().block(*scale);
   errors.observed_share = blind == 0 ? 0.0 : static_cast<double>(observed) / blind;
   std::printf("position %.3f m, height %.3f m, level %.3f m, scale %+.3f\n", errors.position, errors.height,

@@ -45,21 +45,18 @@ enum class BlockKind : std::uint8_t {
   ImuIntrinsics
 };
 
-/// Of the anchor depth: nearer than this counts as behind the camera.
-inline constexpr double kMinDepthShare = 1e-3;
-
 /// Names one parameter block: a state's pose or motion, a feature's inverse depth, ln s of the depth source (Eq. 5),
 /// the bias of a height sensor, the scale error of a velocity sensor, the calibration of a camera, or that of the IMU.
 struct BlockKey {
   BlockKind kind;
-  std::uint64_t id;  ///< state number, FeatureId, number of the piece (WalkingScalar), index of the camera, or 0
+  std::uint64_t id;  ///< state number, FeatureId, number of the block (RandomWalkParameter), index of the camera, or 0
   auto operator<=>(const BlockKey&) const = default;
 };
 
-/// Of the one block of the IMU's scale and axes.
+/// The one block of the IMU's scale and axes.
 inline constexpr BlockKey kImuIntrinsicsKey{BlockKind::ImuIntrinsics, 0};
 
-/// Of a camera or of the IMU.
+/// Whether the block is the calibration of a camera or of the IMU.
 constexpr bool is_calibration(BlockKey key) {
   return key.kind == BlockKind::Calibration || key.kind == BlockKind::ImuIntrinsics;
 }

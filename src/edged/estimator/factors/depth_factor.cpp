@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "edged/estimator/tuning.hpp"
+
 namespace edged {
 namespace {
 
@@ -29,7 +31,7 @@ std::optional<LogInverseDepth> log_inverse_depth(const DepthLandmark& landmark, 
   const Eigen::Matrix3d R_O_B0 = T_O_B0.R(), R_B1_O = T_O_B1.R().transpose();
   const Vector3d x_B1 = R_B1_O * (R_O_B0 * x_B0 + rho * step_O);
   const double w = z_E_in_B.dot(x_B1 - rho * t_B_E);
-  if (w < kMinDepthShare) return std::nullopt;
+  if (w < kFactorTuning.min_depth_share) return std::nullopt;
 
   LogInverseDepth out;
   out.value = std::log(rho) - std::log(w);
@@ -63,7 +65,7 @@ DepthFactor::DepthFactor(const DepthMeasurement& measured, BlockKey scale, std::
       poses_(blocks().size() - 1 - landmarks_.size()),
       rho_source_(1.0 / measured.source_depth_m),
       weight_(measured.weight),
-      loss_(measured.cauchy_scale) {
+      loss_(kFactorTuning.cauchy_scale) {
   for (const DepthLandmark& landmark : landmarks_) {
     const auto block = std::ranges::find(blocks(), BlockKey{BlockKind::Pose, landmark.anchor});
     anchor_blocks_.push_back(static_cast<std::size_t>(block - blocks().begin()));

@@ -16,7 +16,7 @@ namespace edged {
 /// A landmark in the factor.
 struct DepthLandmark {
   std::uint64_t id = 0;          ///< FeatureId
-  SE3 T_B_C;                     ///< of the anchor camera
+  SE3 T_B_C;                     ///< pose of the anchor camera
   Eigen::Vector2d anchor_point;  ///< on that camera's unit plane, in the anchor view
   StateId anchor = 0;
 };
@@ -25,10 +25,9 @@ struct DepthLandmark {
 struct DepthMeasurement {
   DepthResidual residual;
   StateId state;
-  SE3 T_B_E;  ///< of the observing camera
+  SE3 T_B_E;  ///< pose of the observing camera
   double source_depth_m;
   double weight;
-  double cauchy_scale;
 };
 
 /// Blocks: ln s; the pose of the observing state, then those of the other anchors; the inverse depth of each landmark
@@ -48,7 +47,7 @@ class DepthFactor final : public Factor {
   DepthResidual residual_;
   Eigen::Vector3d t_B_E_, z_E_in_B_;
   std::vector<DepthLandmark> landmarks_;
-  std::vector<std::size_t> anchor_blocks_;  ///< by landmark
+  std::vector<std::size_t> anchor_blocks_;  ///< index of the anchor's pose, by landmark
   std::size_t poses_;
   double rho_source_, weight_;
   ceres::CauchyLoss loss_;

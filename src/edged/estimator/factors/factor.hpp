@@ -6,8 +6,10 @@
 #include <ceres/cost_function.h>
 #include <ceres/loss_function.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "edged/estimator/factors/blocks.hpp"
@@ -32,17 +34,22 @@ class Factor : public ceres::CostFunction {
 
   /// Whether it goes into the prior with the blocks that are marginalised. A factor between a keyframe and a state that
   /// is no keyframe must not: that state will be dropped.
-  virtual bool marginalized_with(const std::set<BlockKey>& leaving) const;
+  virtual bool marginalized_with(const std::set<BlockKey>& leaving) const {
+    return std::ranges::any_of(blocks_, [&](const BlockKey& key) { return leaving.contains(key); });
+  }
   /// The factor that replaces it when one of its states is dropped; null: it ends with that state.
-  virtual std::shared_ptr<Factor> without(const DroppedState& dropped) const;
+  virtual std::shared_ptr<Factor> without(const DroppedState&) const { return nullptr; }
   /// Merges the measurement of another factor into this one; false if the two cannot be merged.
-  virtual bool absorb(const Factor& other);
+  virtual bool merge(const Factor&) { return false; }
 
   /// Replaces a block by another of the same kind.
-  void replace(BlockKey before, BlockKey after);
+  void replace(BlockKey before, BlockKey after) { std::ranges::replace(blocks_, before, after); }
 
  protected:
-  Factor(int residuals, std::vector<BlockKey> blocks);
+  Factor(int residuals, std::vector<BlockKey> blocks) : blocks_(std::move(blocks)) {
+    set_num_residuals(residuals);
+    for (const BlockKey& key : blocks_) mutable_parameter_block_sizes()->push_back(block_size(key.kind));
+  }
 
  private:
   std::vector<BlockKey> blocks_;

@@ -20,27 +20,27 @@ class HeightFactor final : public Factor {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   bool marginalized_with(const std::set<BlockKey>& leaving) const override;
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
-  bool absorb(const Factor& other) override;
+  bool merge(const Factor& other) override;
 
   /// The measurement minus the height of the body: the bias by these samples alone.
   double bias_at(const double* pose, const double* motion) const;
 
  private:
-  /// Height = z + dt v_z - g half_dt2 + e_z R (moved + by_gyro b_g + by_accel b_a).
-  struct Way {
+  /// Height = z + dt v_z - g half_dt2 + e_z R (d_p + d_p_d_bg b_g + d_p_d_ba b_a).
+  struct PropagatedPosition {
     double dt = 0.0, half_dt2 = 0.0;
-    Eigen::Vector3d moved = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d by_gyro = Eigen::Matrix3d::Zero(), by_accel = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d d_p = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d d_p_d_bg = Eigen::Matrix3d::Zero(), d_p_d_ba = Eigen::Matrix3d::Zero();
 
-    /// The same, from the previous state at the other end of the IMU interval.
-    Way after(const Preintegration& imu) const;
-    void add(double share, const Way& other);
+    /// This propagation from the previous state, at the other end of the IMU interval.
+    PropagatedPosition from_state_before(const Preintegration& imu) const;
+    void average_with(double share, const PropagatedPosition& other);
     Eigen::Vector3d in_body(const double* motion) const;
   };
 
-  HeightFactor(StateId state, BlockKey bias, Way way, double height_m, double weight);
+  HeightFactor(StateId state, BlockKey bias, PropagatedPosition propagated, double height_m, double weight);
 
-  Way way_;
+  PropagatedPosition propagated_;
   double height_m_, weight_;  ///< weighted mean, sum of 1 / sigma^2
   ceres::CauchyLoss loss_;
 };

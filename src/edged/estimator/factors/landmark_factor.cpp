@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/factors/landmark_factor.hpp"
 
-#include "edged/estimator/factors/blocks.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -51,7 +51,7 @@ AnchoredLandmark::AnchoredLandmark(const CameraView& view, const ImagePoint& poi
 
 bool AnchoredLandmark::error(const CameraView& seen, const ImagePoint& point, Vector2d& e) const {
   const Vector3d x_C = in_camera(seen.at);
-  if (x_C.z() < kMinDepthShare) return false;
+  if (x_C.z() < kFactorTuning.min_depth_share) return false;
   e = x_C.head<2>() / x_C.z() - seen.camera.corrected(point);
   return true;
 }
@@ -70,7 +70,7 @@ bool LandmarkDerivatives::error(const CameraView& view, const ImagePoint& point,
   const CameraOnBody& camera = view.camera;
   const CameraAt& seen = view.at;
   const Vector3d x_C = landmark_.in_camera(seen);
-  if (x_C.z() < kMinDepthShare) return false;
+  if (x_C.z() < kFactorTuning.min_depth_share) return false;
   const double z_inv = 1.0 / x_C.z();
   const Vector2d predicted = x_C.head<2>() * z_inv;
   observation.e = x_C.head<2>() / x_C.z() - camera.corrected(point);  // bit-identical to AnchoredLandmark::error

@@ -42,14 +42,14 @@ struct CameraOnBody {
   }
 
   Eigen::Matrix3d by_phi;  ///< right Jacobian at phi: a change of phi as a rotation of the camera
-  double time;             ///< of its image after the state [s]
+  double time;             ///< time of its image after the state [s]
   IntrinsicsCorrection intrinsics;
 };
 
 /// A camera at one state's image. The rate is a constant: its error enters only times the time shift.
 struct CameraAt {
   CameraAt(const CameraOnBody& camera, const SE3& T_O_B, const BodyRate& rate);
-  Eigen::Matrix3d R_O_B;  ///< of the body at the image's time
+  Eigen::Matrix3d R_O_B;  ///< rotation of the body at the image's time
   Eigen::Matrix3d R_C_O;
   Eigen::Vector3d p_O_C;
   Eigen::Matrix3d by_turn;  ///< a rotation of the body at the state as one at the time of the image
@@ -90,7 +90,7 @@ struct AnchoredLandmark {
   const CameraAt& anchor;
   double rho;
   Eigen::Vector3d bearing_C, bearing_O;
-  const ByIntrinsics& by_intrinsics;  ///< of bearing_C's first two
+  const ByIntrinsics& by_intrinsics;  ///< derivatives of bearing_C's first two numbers
 };
 
 /// The common part of the derivatives of all observations of a landmark: that of its position in O, times rho, by the

@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/estimator/factors/linear_prior.hpp"
 
-#include <cmath>
-
 #include "edged/core/check.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
 
 LinearPrior prior_at(BlockKey key, std::span<const double> values, const Eigen::VectorXd& sigmas) {
-  constexpr double kHeld = 1e-9;
   LinearPrior prior;
   prior.blocks = {key};
   prior.x0 = {{values.begin(), values.end()}};
-  prior.J = sigmas.cwiseMax(kHeld).cwiseInverse().asDiagonal();
+  prior.J = sigmas.cwiseMax(1e-9).cwiseInverse().asDiagonal();
   prior.r = Eigen::VectorXd::Zero(sigmas.size());
   return prior;
 }
@@ -32,13 +29,9 @@ LinearPrior gauge_prior(BlockKey pose, const PoseBlock& at, double position_sigm
 }
 
 LinearPrior motion_prior(BlockKey motion, const MotionBlock& mean, const Eigen::Vector3d& sigmas) {
-  LinearPrior prior;
-  prior.blocks = {motion};
-  prior.x0 = {{mean.begin(), mean.end()}};
-  prior.J = Eigen::MatrixXd::Zero(9, 9);
-  for (int i = 0; i < 9; ++i) prior.J(i, i) = std::isinf(sigmas[i / 3]) ? 0.0 : 1.0 / sigmas[i / 3];
-  prior.r = Eigen::VectorXd::Zero(9);
-  return prior;
+  Eigen::Matrix<double, 9, 1> each;
+  for (int i = 0; i < 9; ++i) each[i] = sigmas[i / 3];
+  return prior_at(motion, mean, each);
 }
 
 LinearPrior rest_prior(BlockKey pose, const PoseBlock& at, BlockKey motion, const MotionBlock& mean,

@@ -24,7 +24,7 @@ struct LinearPrior {
   bool empty() const { return blocks.empty(); }
 };
 
-/// A block near these values, with one sigma for each of its numbers. A sigma of zero fixes a number.
+/// A block near these values, with one sigma for each of its numbers. Zero fixes a number, kFree leaves it free.
 LinearPrior prior_at(BlockKey key, std::span<const double> values, const Eigen::VectorXd& sigmas);
 
 /// Fixes position and yaw (rotation about z) of one pose at their present value.

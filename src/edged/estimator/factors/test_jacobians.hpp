@@ -9,12 +9,28 @@
 #include <algorithm>
 #include <vector>
 
-#include "edged/estimator/factors/blocks.hpp"
+#include "edged/core/odom_state.hpp"
+#include "edged/estimator/factors/factor.hpp"
 
 namespace edged {
 
 using Blocks = std::vector<std::vector<double>>;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+inline std::vector<double> pose_block(const SE3& T) {
+  const PoseBlock block = to_block(T);
+  return {block.begin(), block.end()};
+}
+inline std::vector<double> pose_block(const Eigen::Vector3d& phi, const Eigen::Vector3d& p) {
+  return pose_block(SE3(so3::exp(phi), p));
+}
+inline std::vector<double> motion_numbers(const OdomState& s) {
+  std::vector<double> motion;
+  for (const Eigen::Vector3d& part : {s.v_O, s.bias_gyro, s.bias_accel}) {
+    motion.insert(motion.end(), part.begin(), part.end());
+  }
+  return motion;
+}
 
 inline std::vector<double> plus(BlockKind kind, std::vector<double> x, const Eigen::VectorXd& d) {
   plus(kind, x.data(), d.data());
@@ -29,7 +45,7 @@ inline Eigen::VectorXd evaluate(const ceres::CostFunction& cost, const Blocks& b
   return r;
 }
 
-/// Largest difference between the analytic and the numeric Jacobian, relative to the largest entry of the block.
+/// Expects analytic and numeric Jacobians to be equal, relative to the largest entry of the block.
 inline void check_jacobians(const ceres::CostFunction& cost, const std::vector<BlockKind>& kinds,
                             const Blocks& blocks) {
   std::vector<const double*> data;
@@ -58,6 +74,12 @@ inline void check_jacobians(const ceres::CostFunction& cost, const std::vector<B
       EXPECT_EQ(J[b].col(6).cwiseAbs().maxCoeff(), 0.0);
     }
   }
+}
+
+inline void check_jacobians(const Factor& factor, const Blocks& blocks) {
+  std::vector<BlockKind> kinds;
+  for (const BlockKey& key : factor.blocks()) kinds.push_back(key.kind);
+  check_jacobians(factor, kinds, blocks);
 }
 
 }  // namespace edged

@@ -22,24 +22,24 @@ class VelocityFactor final : public Factor {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   bool marginalized_with(const std::set<BlockKey>& leaving) const override;
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
-  bool absorb(const Factor& other) override;
+  bool merge(const Factor& other) override;
 
  private:
-  /// by_velocity v_B + by_gravity g_B + off + by_gyro b_g + by_accel b_a, with velocity and gravity in the state's B.
-  struct Way {
-    Eigen::Matrix3d by_velocity, by_gravity, by_gyro, by_accel;
-    Eigen::Vector3d off;
+  /// d_v v_B + d_g g_B + constant + d_bg b_g + d_ba b_a, with velocity and gravity in the state's B.
+  struct PropagatedVelocity {
+    Eigen::Matrix3d d_v, d_g, d_bg, d_ba;
+    Eigen::Vector3d constant;
 
-    /// The same, from the previous state at the other end of the IMU interval.
-    Way after(const Preintegration& imu) const;
-    /// share: per axis of the sensor.
-    void add(const Eigen::Vector3d& share, const Way& other);
+    /// This propagation from the previous state, at the other end of the IMU interval.
+    PropagatedVelocity from_state_before(const Preintegration& imu) const;
+    /// `share` is one number for each axis of the sensor.
+    void average_with(const Eigen::Vector3d& share, const PropagatedVelocity& other);
   };
 
-  VelocityFactor(StateId state, BlockKey scale, Way way, const Eigen::Vector3d& measured,
+  VelocityFactor(StateId state, BlockKey scale, PropagatedVelocity propagated, const Eigen::Vector3d& measured,
                  const Eigen::Vector3d& weight);
 
-  Way way_;
+  PropagatedVelocity propagated_;
   Eigen::Vector3d measured_;  ///< weighted mean; 0 for an axis that is not measured
   Eigen::Vector3d weight_;    ///< sum of 1 / sigma^2
   ceres::CauchyLoss loss_;

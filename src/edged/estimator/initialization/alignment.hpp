@@ -21,8 +21,7 @@
 #include <vector>
 
 #include "edged/core/odom_state.hpp"
-#include "edged/estimator/initialization/init_frame.hpp"
-#include "edged/estimator/initialization/start_solver.hpp"
+#include "edged/estimator/initialization/initialization_solver.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/rig.hpp"
 
@@ -32,11 +31,11 @@ struct Alignment {
   std::vector<OdomState> states;  ///< one a frame; O z-up, origin and yaw at the first body pose
   double gravity_error = 0.0;     ///< |g| estimated without the constraint, relative to 9.81: a check of the solution
   double scale_sigma = 0.0;       ///< standard deviation of the longest baseline over its length, from the features
-  double baseline_sigma = 0.0;    ///< the same by the baselines between cameras; infinite with one
+  double baseline_sigma = 0.0;    ///< standard deviation of ln scale by the baselines between cameras
   std::set<FeatureId> outliers;   ///< features of dynamic objects
-  /// Of the observations that it explains, the share that a running estimate explains too, 0 to 1: small if that one
+  /// Share of the observations that it explains which a running estimate explains too, 0 to 1: small if that one
   /// follows a dynamic object.
-  double explained = 1.0;
+  double inlier_share = 1.0;
 };
 
 /// Gyro bias [rad/s] that best explains the image rotation; nothing with too few common features.

@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/core/angles.hpp"
 #include "edged/estimator/test_world.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kSpacing_s = 0.08;
 const StartPriors kPriors{.biases = {.gyro_sigma = 0.02, .accel_sigma = 0.15}};
 
@@ -36,7 +36,7 @@ AlignmentErrors errors_of(const Alignment& alignment, const TestWorld& world, co
     const double t = to_seconds(state.t);
     const SE3 truth = world.T_W_B(t);
     const double cosine = state.T_O_B.R().row(2).dot(truth.R().row(2));
-    e.gravity_deg = std::max(e.gravity_deg, std::acos(std::min(1.0, cosine)) / kDeg);
+    e.gravity_deg = std::max(e.gravity_deg, std::acos(std::min(1.0, cosine)) / kDegree);
     e.speed = std::max(
         e.speed, (state.T_O_B.rotation().conjugate() * state.v_O - truth.rotation().conjugate() * world.v_W(t)).norm());
     e.bias_gyro = std::max(e.bias_gyro, (state.bias_gyro - bias_gyro).norm());
@@ -161,13 +161,13 @@ TEST(Align, TellsAnEstimateOfTheRoomFromOneOfWhatWalksInIt) {
     state.t = frames.back().t;
     state.T_O_B = world.T_W_B(t);
     state.v_O = world.v_W(t);
-    const auto explained = [&](const OdomState& s) {
-      return align(frames, world.rig(), world.noise(), kPriors, &s)->explained;
+    const auto inlier_share = [&](const OdomState& s) {
+      return align(frames, world.rig(), world.noise(), kPriors, &s)->inlier_share;
     };
-    const double of_the_room = explained(state);
+    const double of_the_room = inlier_share(state);
     EXPECT_GT(of_the_room, 0.6);
     state.v_O -= Eigen::Vector3d(0.6, 0.1, 0.0);
-    EXPECT_LT(explained(state), 0.5 * of_the_room);
+    EXPECT_LT(inlier_share(state), 0.5 * of_the_room);
   }
 }
 

@@ -7,16 +7,13 @@
 #include <map>
 
 #include "edged/estimator/initialization/alignment.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr std::size_t kMinPairCorners = 10;
-constexpr double kBiasPrior = 0.15;  // [rad/s]
-constexpr double kPairNoise = 5e-3;  // [rad]
 
 /// A feature observed in two frames, as rays with the orientation of the body frame at each.
 struct RayPair {
@@ -65,7 +62,7 @@ std::vector<RotationPair> rotation_pairs(const std::vector<InitFrame>& frames, c
     for (std::size_t i = 0; i + step < frames.size(); ++i) {
       for (const RigCamera& camera : rig.cameras) {
         std::vector<RayPair> rays = common_rays(frames[i], frames[i + step], camera);
-        if (rays.size() < kMinPairCorners) continue;
+        if (rays.size() < kAlignmentTuning.min_pair_features) continue;
         out.push_back({std::move(rays), between(frames, i, i + step, Vector3d::Zero(), noise)});
       }
     }
@@ -100,12 +97,13 @@ void add_coplanarity(const RotationPair& pair, const Vector3d& bg, Matrix3d& H, 
   for (const RayPair& rays : pair.rays) {
     const Vector3d turned = R * rays.ray_1, n = rays.ray_0.cross(turned);
     const double along = baseline.dot(rays.ray_0), across = std::sqrt(std::max(1.0 - along * along, 1e-4));
-    const double e = baseline.dot(n) / (across * kPairNoise);
+    const double e = baseline.dot(n) / (across * kAlignmentTuning.ray_sigma);
     Eigen::Matrix<double, 5, 1> J;
     J.head<3>() = (baseline.transpose() * skew(rays.ray_0) * -R * skew(rays.ray_1) * d_phi_d_bg).transpose() /
-                  (across * kPairNoise);
-    J.tail<2>() = tangent.transpose() * (n / (across * kPairNoise) + e * along / (across * across) * rays.ray_0);
-    const double weight = std::abs(e) < 1.5 ? 1.0 : 1.5 / std::abs(e);  // Huber
+                  (across * kAlignmentTuning.ray_sigma);
+    J.tail<2>() =
+        tangent.transpose() * (n / (across * kAlignmentTuning.ray_sigma) + e * along / (across * across) * rays.ray_0);
+    const double huber = kAlignmentTuning.huber_sigma, weight = std::abs(e) < huber ? 1.0 : huber / std::abs(e);
     N += weight * J * J.transpose();
     c += weight * J * e;
   }
@@ -122,8 +120,8 @@ std::optional<Vector3d> align_gyro_bias(const std::vector<InitFrame>& frames, co
   if (pairs.size() < 3) return std::nullopt;
   Vector3d bg = Vector3d::Zero();
   for (int iteration = 0; iteration < 10; ++iteration) {
-    Matrix3d H = Matrix3d::Identity() / (kBiasPrior * kBiasPrior);
-    Vector3d g = bg / (kBiasPrior * kBiasPrior);
+    Matrix3d H = Matrix3d::Identity() / (kAlignmentTuning.gyro_bias_sigma * kAlignmentTuning.gyro_bias_sigma);
+    Vector3d g = bg / (kAlignmentTuning.gyro_bias_sigma * kAlignmentTuning.gyro_bias_sigma);
     for (const RotationPair& pair : pairs) add_coplanarity(pair, bg, H, g);
     const Vector3d step = H.ldlt().solve(-g);
     bg += step;

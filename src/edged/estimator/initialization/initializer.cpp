@@ -12,35 +12,12 @@
 #include "edged/estimator/external/external_factors.hpp"
 #include "edged/estimator/solver/covariance.hpp"
 #include "edged/estimator/solver/solver.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/depth_terms.hpp"
 #include "edged/estimator/window/landmarks.hpp"
 
 namespace edged {
 namespace {
-
-constexpr double kGaugeSigma_m = 1e-4, kGaugeSigma_rad = 1e-4;
-constexpr int kStartIterations = 25, kRefineIterations = 8;
-constexpr std::ptrdiff_t kMinStartLandmarks = 15;
-constexpr double kMaxGravityError = 1.0;      // [m/s^2] of the mean acceleration at rest
-constexpr double kRestAccelSigma = 0.03;      // [m/s^2] of that mean: a calm IMU may still move a little
-constexpr double kMaxFreeGravityError = 0.3;  // of an initialization in motion, with the magnitude of gravity left free
-constexpr double kMaxPendingImu_s = 10.0;     // without an image before the start
-constexpr double kMaxStartRms =
-    2.0;  // [sigma] of the observations in the start-up window: above it the initialization is wrong
-// The noise of the start-up window's observations over the spread of their residuals, and the least of it over the
-// configured one.
-constexpr double kStartNoiseInflation = 2.5, kLeastStartNoise = 0.3;
-constexpr double kMaxTiltSigma_deg = 2.0;  // the accelerometer bias alone causes 0.9
-constexpr double kMaxBiasSigmas = 4.0;     // of the accelerometer bias
-constexpr Duration kSolveEvery = std::chrono::milliseconds(250);
-// Where cameras share features: three views determine velocity and gravity, as depths are known.
-constexpr int kStereoViews = 3;
-constexpr double kStereoSpacing_s = 0.04;
-// [rad/s] around zero: in so short a time the alignment takes slow motion for a bias.
-constexpr double kPairGyroBiasSigma = 0.05;
-constexpr double kMaxSpeedSigma = 0.06;  // [m/s] of the newest state, worst direction
-constexpr double kAlignmentSlack =
-    1.5;  // the scale of the solved window may be more certain than that of the alignment
 
 void append_imu(std::vector<ImuSample>& to, const std::vector<ImuSample>& more) {
   // The first sample of a packet repeats the last one of the packet before.
@@ -71,7 +48,7 @@ bool shares_features(const std::vector<CameraObservations>& observations) {
   for (const CameraObservations& view : observations) {
     for (const FeatureObservation& feature : view.features) shared += seen.insert(feature.id).second ? 0 : 1;
   }
-  return shared >= kMinStartLandmarks;
+  return shared >= kInitializationTuning.min_landmarks;
 }
 
 /// Total angle of the body's rotation over the samples, back and forth both counted [rad].
@@ -116,55 +93,57 @@ double scale_sigma(const Window& window) {
   return std::sqrt(way.dot(P->topLeftCorner<3, 3>() * way)) / way.squaredNorm();
 }
 
-StartResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
-                             const OdomState* running) {
+InitializationResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest,
+                                      double most_scale_sigma, const OdomState* running) {
   const bool new_view = buffer_view(input);
   if (rest != nullptr && rest->still()) {
     const double gravity = rest->mean_accel_B().norm();
-    if (std::abs(gravity - kGravity) > kMaxGravityError) {
+    if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error) {
       return {{}, fmt::format("an accelerometer in m/s^2: it measures {:.2f} of 9.81 at rest", gravity)};
     }
     return {StartWindow{start_at_rest(input, *rest)}};
   }
   if (new_view) {
-    StartResult result = start_in_motion(most_scale_sigma, running);
+    InitializationResult result = start_in_motion(most_scale_sigma, running);
     if (result.start || running != nullptr) return result;
-    motion_lacks_ = std::move(result.waiting_for);
+    missing_in_motion_ = std::move(result.waiting_for);
   }
-  return {{}, rest == nullptr ? motion_lacks_ : fmt::format("rest ({}) or {}", rest->reason(), motion_lacks_)};
+  return {{},
+          rest == nullptr ? missing_in_motion_ : fmt::format("rest ({}) or {}", rest->reason(), missing_in_motion_)};
 }
 
-/// Keeps the input as a view if the next one is due. True if it did.
+/// Keeps the input as a view if the next one is due. Returns whether it did.
 bool Initializer::buffer_view(const EstimatorInput& input) {
   append_imu(pending_imu_, input.motion.samples());
   pending_external_.insert(pending_external_.end(), input.external.begin(), input.external.end());
-  if (to_seconds(input.t - pending_imu_.front().t) > kMaxPendingImu_s) {
+  if (to_seconds(input.t - pending_imu_.front().t) > kInitializationTuning.max_pending_imu_s) {
     buffer_.clear();
     pending_imu_ = input.motion.samples();
     pending_external_ = input.external;
   }
-  const bool any_corner = std::any_of(input.observations.begin(), input.observations.end(),
-                                      [](const CameraObservations& view) { return !view.features.empty(); });
-  if (!any_corner || !view_due(input)) return false;
+  const bool any_feature =
+      std::ranges::any_of(input.observations, [](const CameraObservations& view) { return !view.features.empty(); });
+  if (!any_feature || !view_due(input)) return false;
   buffer_.push_back({input.t, std::move(pending_imu_), input.observations, input.depth, std::move(pending_external_)});
   pending_imu_.clear();
   pending_external_.clear();
-  if (buffer_.size() > static_cast<std::size_t>(config_.init_max_views)) make_room();
+  if (buffer_.size() > static_cast<std::size_t>(kInitializationTuning.max_views)) make_room();
   return true;
 }
 
 /// In a fast rotation a feature crosses the view within a tenth of a second, so views must be close.
 bool Initializer::view_due(const EstimatorInput& input) const {
-  const double spacing_s = shares_features(input.observations) ? kStereoSpacing_s : config_.init_spacing_s;
+  const double spacing_s =
+      shares_features(input.observations) ? kInitializationTuning.stereo_spacing_s : kInitializationTuning.spacing_s;
   return buffer_.empty() || input.t - buffer_.back().t >= duration_from_seconds(spacing_s) ||
-         turned_rad(pending_imu_) > config_.init_turn_deg * kDegree;
+         turned_rad(pending_imu_) > kInitializationTuning.turn;
 }
 
 /// Slow motion needs time to determine the scale, fast motion needs close views. When the buffer is full, the view
 /// closest to its neighbours relative to its age is removed, so that older views are farther apart.
 void Initializer::make_room() {
   const Timestamp newest = buffer_.back().t;
-  if (to_seconds(newest - buffer_.front().t) > config_.init_max_span_s) {
+  if (to_seconds(newest - buffer_.front().t) > kInitializationTuning.max_span_s) {
     buffer_.erase(buffer_.begin());
     return;
   }
@@ -184,12 +163,6 @@ void Initializer::make_room() {
   buffer_.erase(buffer_.begin() + static_cast<std::ptrdiff_t>(leaves));
 }
 
-Window Initializer::empty_window() const {
-  Window window(rig_, config_.cauchy_scale, config_.depth_factor);
-  window.set_track_noise(config_.track_noise);
-  return window;
-}
-
 Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillDetector& standstill) const {
   OdomState state;
   state.t = input.t;
@@ -198,63 +171,70 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   const BiasPrior prior = biases();
   state.bias_gyro = standstill.mean_gyro_B();
   state.bias_accel = prior.accel;
-  Window window = empty_window();
+  Window window(rig_, config_.track_noise, config_.depth_factor);
   const StateId id =
       window.add_state(window_state(state, input.motion.samples().back().gyro_B, {}, true), input.observations);
   const WindowState& first = window.newest();
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
-  window.add_soft_prior(gauge_prior(pose, to_block(state.T_O_B), kGaugeSigma_m, kGaugeSigma_rad));
-  window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(), kRestAccelSigma));
-  window.add_soft_prior(motion_prior(motion, motion_block(state),
-                                     {config_.zero_velocity_sigma, config_.rest_gyro_bias_sigma, prior.accel_sigma}));
+  window.add_soft_prior(gauge_prior(pose, to_block(state.T_O_B), kInitializationTuning.gauge_sigma_m,
+                                    kInitializationTuning.gauge_sigma_rad));
+  window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(),
+                                   kInitializationTuning.rest_accel_sigma));
+  window.add_soft_prior(motion_prior(
+      motion, motion_block(state),
+      {kInitializationTuning.zero_velocity_sigma, kInitializationTuning.rest_gyro_bias_sigma, prior.accel_sigma}));
   return window;
 }
 
 BiasPrior Initializer::biases() const {
-  return known_biases_.value_or(
-      BiasPrior{.gyro_sigma = config_.gyro_bias_sigma, .accel_sigma = config_.accel_bias_sigma});
+  return known_biases_.value_or(BiasPrior{.gyro_sigma = kInitializationTuning.gyro_bias_sigma,
+                                          .accel_sigma = kInitializationTuning.accel_bias_sigma});
 }
 
-StartResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
-  const int wanted = shares_features(buffer_.back().observations) ? kStereoViews : config_.init_min_views;
+InitializationResult Initializer::start_in_motion(double most_scale_sigma, const OdomState* running) {
+  const int wanted = shares_features(buffer_.back().observations) ? kInitializationTuning.stereo_min_views
+                                                                  : kInitializationTuning.min_views;
   if (views() < wanted) return {{}, views_text(views(), wanted)};
   const Timestamp now = buffer_.back().t;
-  if (now < next_solve_) return {{}, motion_lacks_};
-  StartResult result = start_by(External::Unused, most_scale_sigma, running);
+  if (now < next_solve_) return {{}, missing_in_motion_};
+  InitializationResult result = start_by(External::Unused, most_scale_sigma, running);
   const bool measured = std::ranges::any_of(buffer_, [](const InitFrame& view) { return !view.external.empty(); });
   if (result.start || !measured) return result;
-  StartResult by_all = start_by(External::Used, most_scale_sigma, running);
+  InitializationResult by_all = start_by(External::Used, most_scale_sigma, running);
   return by_all.start ? std::move(by_all) : std::move(result);
 }
 
-StartResult Initializer::start_by(External external, double most_scale_sigma, const OdomState* running) {
+InitializationResult Initializer::start_by(External external, double most_scale_sigma, const OdomState* running) {
   const bool velocities = external == External::Used && config_.velocity.enabled;
   const StartPriors priors{biases(), known_biases_.has_value(), velocities ? &config_.velocity : nullptr};
   const std::optional<Alignment> alignment = align(buffer_, rig_, noise_, priors, running);
   if (!alignment) return {{}, "features tracked over three views"};
-  StartResult result = start_from(*alignment, external, most_scale_sigma);
-  result.explained = alignment->explained;
+  InitializationResult result = start_from(*alignment, external, most_scale_sigma);
+  result.inlier_share = alignment->inlier_share;
   return result;
 }
 
-StartResult Initializer::start_from(const Alignment& alignment, External external, double most_scale_sigma) {
-  if (std::abs(alignment.gravity_error) > kMaxFreeGravityError) {
+InitializationResult Initializer::start_from(const Alignment& alignment, External external, double most_scale_sigma) {
+  if (std::abs(alignment.gravity_error) > kInitializationTuning.max_free_gravity_error) {
     const double seen = kGravity * (1.0 + alignment.gravity_error);
     return {{}, fmt::format("motion that fits gravity: estimated {:.2f} of 9.81 m/s^2", seen)};
   }
   const bool by_baselines = knows_scale(alignment);
-  if (!by_baselines && views() < config_.init_min_views) return {{}, views_text(views(), config_.init_min_views)};
-  if (!by_baselines && !(alignment.scale_sigma <= kAlignmentSlack * most_scale_sigma)) {
+  if (!by_baselines && views() < kInitializationTuning.min_views)
+    return {{}, views_text(views(), kInitializationTuning.min_views)};
+  if (!by_baselines && !(alignment.scale_sigma <= kInitializationTuning.alignment_slack * most_scale_sigma)) {
     return {{}, scale_text(alignment.scale_sigma, most_scale_sigma)};
   }
-  const bool at_each_view = by_baselines && views() <= config_.init_min_views;
-  next_solve_ = buffer_.back().t + (at_each_view ? Duration(0) : kSolveEvery);
+  const bool at_each_view = by_baselines && views() <= kInitializationTuning.min_views;
+  next_solve_ = buffer_.back().t + (at_each_view ? Duration(0) : kInitializationTuning.solve_every);
   Window window = aligned_window(alignment, external);
   solve_start(window);
-  std::string doubt = by_baselines
-                          ? doubt_about(window, kMaxTiltSigma_deg, kMaxSpeedSigma)
-                          : doubt_about(window, kMaxTiltSigma_deg * most_scale_sigma / config_.init_scale_sigma, kFree);
-  if (!doubt.empty()) return {{}, std::move(doubt)};
+  std::string reason =
+      by_baselines
+          ? rejection_reason(window, kInitializationTuning.max_tilt_sigma_deg, kInitializationTuning.max_speed_sigma)
+          : rejection_reason(
+                window, kInitializationTuning.max_tilt_sigma_deg * most_scale_sigma / config_.init_scale_sigma, kFree);
+  if (!reason.empty()) return {{}, std::move(reason)};
   const double sigma = by_baselines ? alignment.baseline_sigma : scale_sigma(window);
   if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
   return {StartWindow{std::move(window), by_baselines, sigma, alignment.outliers}};
@@ -263,29 +243,32 @@ StartResult Initializer::start_from(const Alignment& alignment, External externa
 void Initializer::solve_start(Window& window) const {
   for (int round = 0; round < 3; ++round) {
     triangulate_features(window, config_.landmarks, Tracks::All);
-    solve(window, round == 0 ? kStartIterations : kRefineIterations);
-    if (round == 1) weigh_observations(window);
+    solve(window, round == 0 ? kInitializationTuning.iterations : kInitializationTuning.refine_iterations);
+    if (round == 1) estimate_noise(window);
     remove_outliers(window, config_.landmarks);
   }
 }
 
 /// The noise of observations is estimated from their residuals in the solved window.
-void Initializer::weigh_observations(Window& window) const {
+void Initializer::estimate_noise(Window& window) const {
   for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
     const std::optional<double> spread = median_residual(window, camera, Newness::Any);
     if (!spread) continue;
-    window.rescale_noise(camera, std::clamp(*spread * kStartNoiseInflation, kLeastStartNoise, config_.max_noise_scale));
+    window.rescale_noise(camera, std::clamp(*spread * kInitializationTuning.noise_inflation,
+                                            kInitializationTuning.min_noise, kEstimatorTuning.max_noise_scale));
   }
 }
 
 /// The reason to reject a solved window; empty to accept it.
-std::string Initializer::doubt_about(const Window& window, double most_tilt_deg, double most_speed_sigma) const {
-  const auto landmarks = std::count_if(window.features().begin(), window.features().end(),
-                                       [](const auto& entry) { return entry.second.anchor.has_value(); });
-  if (landmarks < kMinStartLandmarks) return fmt::format("{} of {} landmarks in motion", landmarks, kMinStartLandmarks);
+std::string Initializer::rejection_reason(const Window& window, double most_tilt_deg, double most_speed_sigma) const {
+  const auto landmarks =
+      std::ranges::count_if(window.features(), [](const auto& entry) { return entry.second.anchor.has_value(); });
+  if (landmarks < kInitializationTuning.min_landmarks)
+    return fmt::format("{} of {} landmarks in motion", landmarks, kInitializationTuning.min_landmarks);
   const double rms = visual_rms(window);
-  if (!(rms <= kMaxStartRms)) {
-    return fmt::format("motion that fits the IMU: features {:.1f} of {:.1f} sigma off", rms, kMaxStartRms);
+  if (!(rms <= kInitializationTuning.max_rms_sigma)) {
+    return fmt::format("motion that fits the IMU: features {:.1f} of {:.1f} sigma off", rms,
+                       kInitializationTuning.max_rms_sigma);
   }
   const StartSigmas known = sigmas_of_newest(window);
   const double tilt_deg = known.tilt / kDegree;
@@ -294,11 +277,12 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg,
   }
   const OdomState state = window.newest().nav();
   const BiasPrior prior = biases();
-  const double most_bias = kMaxBiasSigmas * prior.accel_sigma, bias = (state.bias_accel - prior.accel).norm();
+  const double most_bias = kInitializationTuning.max_bias_sigmas * prior.accel_sigma,
+               bias = (state.bias_accel - prior.accel).norm();
   if (bias > most_bias) {
     return fmt::format("a plausible accelerometer bias: {:.2f} of {:.2f} m/s^2", bias, most_bias);
   }
-  if (worst_depth_error(window, {0.0, config_.depth_factor.scale_sigma}) > config_.depth_factor.gate) {
+  if (worst_depth_error(window, {0.0, config_.depth_factor.scale_sigma}) > kDepthTuning.gate_sigma) {
     return "motion whose scale the depth source agrees with";
   }
   if (known.velocity <= most_speed_sigma) return "";
@@ -308,7 +292,7 @@ std::string Initializer::doubt_about(const Window& window, double most_tilt_deg,
 
 /// The views of the buffer as keyframes at the poses of the alignment.
 Window Initializer::aligned_window(const Alignment& alignment, External external) const {
-  Window window = empty_window();
+  Window window(rig_, config_.track_noise, config_.depth_factor);
   for (std::size_t i = 0; i < buffer_.size(); ++i) {
     const OdomState& nav = alignment.states[i];
     Preintegration imu =
@@ -316,13 +300,14 @@ Window Initializer::aligned_window(const Alignment& alignment, External external
     window.add_state(window_state(nav, buffer_[i].imu.back().gyro_B, std::move(imu), true), buffer_[i].observations);
     if (buffer_[i].depth && depth_due(window)) window.set_depth(*buffer_[i].depth);
   }
-  for (const FeatureId id : alignment.outliers) window.forget_feature(id);
+  for (const FeatureId id : alignment.outliers) window.remove_feature(id);
   const auto& [first, state] = *window.states().begin();
-  window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kGaugeSigma_m, kGaugeSigma_rad));
+  window.add_soft_prior(gauge_prior({BlockKind::Pose, first}, state.pose, kInitializationTuning.gauge_sigma_m,
+                                    kInitializationTuning.gauge_sigma_rad));
   BiasPrior prior = biases();
   if (!known_biases_) {
     if (knows_scale(alignment)) {
-      prior.gyro_sigma = kPairGyroBiasSigma;
+      prior.gyro_sigma = kInitializationTuning.pair_gyro_bias_sigma;
     } else {
       prior.gyro = state.nav().bias_gyro;
     }

@@ -4,13 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "edged/core/angles.hpp"
 #include "edged/estimator/estimator.hpp"
 #include "edged/estimator/test_world.hpp"
 
 namespace edged {
 namespace {
-
-constexpr double kRadToDeg = 180.0 / std::numbers::pi;
 
 struct Started {
   double after_s = 0.0;      ///< since the beginning
@@ -60,7 +59,7 @@ std::optional<Started> start(const TestWorldOptions& options, double begin_s, do
     started.scale_error = spread(truth) > 1e-6 ? spread(estimated) / spread(truth) - 1.0 : 0.0;
     const OdomState state = estimator.newest();
     const SE3 T_O_B = world.T_W_B(t);
-    started.tilt_deg = kRadToDeg * std::acos(std::min(1.0, state.T_O_B.R().row(2).dot(T_O_B.R().row(2))));
+    started.tilt_deg = kDegreesPerRadian * std::acos(std::min(1.0, state.T_O_B.R().row(2).dot(T_O_B.R().row(2))));
     started.speed = world.v_W(t).norm();
     started.speed_error =
         (state.T_O_B.rotation().conjugate() * state.v_O - T_O_B.rotation().conjugate() * world.v_W(t)).norm();

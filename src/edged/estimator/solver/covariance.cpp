@@ -33,7 +33,7 @@ std::optional<Matrix15d> covariance(const Window& window, StateId state) {
 }
 
 LogScale estimate_scale(const Window& window) {
-  const BlockKey scale = *window.walking(BlockKind::LogScale);
+  const BlockKey scale = *window.parameter(BlockKind::LogScale);
   const auto P = covariance(window, {scale});
   return {*window.block(scale), P ? std::sqrt((*P)(0, 0)) : window.depth_config().scale_sigma};
 }

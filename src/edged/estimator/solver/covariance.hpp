@@ -14,12 +14,12 @@ namespace edged {
 /// window. Nothing if a direction is not observable, or a block is in no factor.
 std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<BlockKey>& blocks);
 
-/// Of a state: position [m] in the window's frame, rotation [rad] (right perturbation, body axes), velocity
+/// Covariance of a state: position [m] in the window's frame, rotation [rad] (right perturbation, body axes), velocity
 /// [m/s], gyro bias [rad/s], accelerometer bias [m/s^2], in this order. Position and yaw are relative to the start,
 /// where the gauge is fixed.
 std::optional<Matrix15d> covariance(const Window& window, StateId state);
 
-/// Of ln s, given all measurements so far.
+/// Estimate of ln s, given all measurements so far.
 LogScale estimate_scale(const Window& window);
 
 }  // namespace edged

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Index kRowsAtOnce = 4;  // at once: they share the loads of the row that they are multiplied with
 
-/// Of row i with each of the rows from j on, over the columns from k up to j.
+/// Dot products of row i with each of the rows from j on, over the columns from k up to j.
 std::array<double, kRowsAtOnce> dots_of(const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& L,
                                         Index i, Index j, Index k) {
   using Two = Eigen::Array2d;

@@ -20,7 +20,7 @@ class EnvelopeCholesky {
  private:
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> L_;
   Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> first_;  ///< column of a row that is not zero
-  Eigen::VectorXd inverse_;                               ///< of the diagonal
+  Eigen::VectorXd inverse_;                               ///< inverse of the diagonal
 };
 
 }  // namespace edged

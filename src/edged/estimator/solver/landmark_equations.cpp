@@ -87,9 +87,9 @@ LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout,
     : layout_(layout),
       equations_(equations),
       present_(window),
-      taken_(at == Linearisation::Present ? present_ : CameraViews::at_first_estimates(window)),
+      taken_(at == Linearisation::Present ? present_ : CameraPoses::at_first_estimates(window)),
       at_present_(at == Linearisation::Present),
-      loss_(window.visual_loss()) {
+      loss_(visual_loss()) {
   constexpr Index kNowhere = -1;  // of a block that no term knows
   const auto place_of = [&](BlockKey key) {
     const auto found = layout.offset.find(key);
@@ -121,7 +121,7 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
 /// Residuals at the present values, Jacobians where they are taken; use(index of the residual, error, error before).
 template <typename Use>
 void LandmarkEquations::linearise(const LandmarkTerm& term, const Use& use) const {
-  const CameraViews &now = present_, &taken = taken_;
+  const CameraPoses &now = present_, &taken = taken_;
   const std::size_t anchor = term.anchor.camera;
   const AnchoredLandmark landmark(now.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
   const AnchoredLandmark first(taken.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
@@ -143,7 +143,7 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
                                    const LandmarkTerm& term) {
   const LandmarkResidual& at = term.residuals[residual];
   const bool correlated = at.correlation != 0.0;
-  WeightedResidual J = weighted(at, error, before, *loss_, calibration_of_[residual] != 0);
+  WeightedResidual J = weighted(at, error, before, loss_, calibration_of_[residual] != 0);
   if (!at_present_) {
     J.r -= J.anchor.transpose() * taken_.moved(term.anchor_place) + J.seen.transpose() * taken_.moved(at.place);
     if (correlated) J.r -= J.before.transpose() * taken_.moved(term.residuals[residual - 1].place);
@@ -186,7 +186,7 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
   depth_.g += J.depth.dot(J.r);
 }
 
-/// Of the anchor and the calibration of its camera, common to all residuals.
+/// Adds the part of the anchor and of the calibration of its camera, common to all residuals.
 void LandmarkEquations::add_own() {
   const Index anchor = depth_.poses.front().global, calibration = depth_.calibrations.front().global;
   equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());
@@ -208,7 +208,7 @@ void LandmarkEquations::add_depth(Index place) {
   equations_.g[place] += depth_.g;
 }
 
-/// (S1)
+/// Eliminates the inverse depth (docs/math.md, S1).
 void LandmarkEquations::eliminate_depth() {
   for (std::size_t i = 0; i < depth_.poses.size(); ++i) {
     const DepthByPose& row = depth_.poses[i];
@@ -256,7 +256,7 @@ void LandmarkEquations::add_gradient(const LandmarkTerm& term, DepthEquation* ea
   linearise(term, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
     const LandmarkResidual& at = term.residuals[residual];
     const bool other_camera = at.seen.camera != term.anchor.camera;
-    const WeightedResidual J = weighted(at, error, before, *loss_, other_camera);
+    const WeightedResidual J = weighted(at, error, before, loss_, other_camera);
     g.segment<6>(anchor) += J.anchor * J.r;
     g.segment<6>(poses_[at.place]) += J.seen * J.r;
     if (at.correlation != 0.0) g.segment<6>(poses_[term.residuals[residual - 1].place]) += J.before * J.r;
@@ -275,7 +275,7 @@ void LandmarkEquations::add_gradient(const LandmarkTerm& term, DepthEquation* ea
   }
 }
 
-double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss) {
+double value_of(const LandmarkTerm& term, const CameraPoses& views, const ceres::LossFunction& loss) {
   const CameraView anchor = views.at(term.anchor.camera, term.anchor_place);
   const AnchoredLandmark landmark(anchor, term.point, *term.inverse_depth);
   double sum = 0.0;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "edged/estimator/solver/linear_system.hpp"
-#include "edged/estimator/window/camera_views.hpp"
+#include "edged/estimator/window/camera_poses.hpp"
 #include "edged/estimator/window/cost.hpp"
 
 namespace edged {
@@ -32,9 +32,9 @@ class LandmarkEquations {
 
   const Layout& layout_;
   NormalEquations& equations_;
-  CameraViews present_, taken_;
+  CameraPoses present_, taken_;
   bool at_present_;  ///< the two are the same
-  ceres::LossFunction* loss_;
+  const ceres::LossFunction& loss_;
   std::vector<Eigen::Index> poses_, calibrations_;  ///< global columns, by the index of a state and of a camera
 
   // Of the present landmark. Columns: the anchor's pose, the calibration of its camera.
@@ -45,7 +45,7 @@ class LandmarkEquations {
   std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its index in depth_
 };
 
-/// Half the sum of its squared residuals, with the loss; infinite if it is behind a camera.
-double value_of(const LandmarkTerm& term, const CameraViews& views, const ceres::LossFunction& loss);
+/// Half the sum of the landmark's squared residuals, with the loss; infinite if it is behind a camera.
+double value_of(const LandmarkTerm& term, const CameraPoses& views, const ceres::LossFunction& loss);
 
 }  // namespace edged

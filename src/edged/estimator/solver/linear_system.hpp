@@ -62,7 +62,7 @@ struct DepthByPose {
   Vector6d coupling = Vector6d::Zero();
 };
 
-/// The same with the calibration of one of its cameras.
+/// The coupling of a landmark's inverse depth and the calibration of one of its cameras.
 struct DepthByCalibration {
   Eigen::Index global = 0;
   CalibrationVector coupling = CalibrationVector::Zero();

@@ -156,8 +156,8 @@ Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& l
 double value_of(const Window& window, const Cost& cost) {
   double sum = cost.prior ? value_of(window, *cost.prior) : 0.0;
   for (const auto& factor : cost.factors) sum += value_of(window, *factor);
-  const CameraViews views(window);
-  for (const LandmarkTerm& term : cost.landmarks) sum += value_of(term, views, *window.visual_loss());
+  const CameraPoses views(window);
+  for (const LandmarkTerm& term : cost.landmarks) sum += value_of(term, views, visual_loss());
   return sum;
 }
 

@@ -14,8 +14,8 @@ namespace edged {
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
                                  std::vector<DepthEquation>* eliminated = nullptr);
 
-/// Their gradient alone, at the present values. The inverse depths are eliminated by their equations of an earlier
-/// linearization of the same cost, whose gradients are replaced.
+/// The gradient of the terms alone, at the present values. The inverse depths are eliminated by their equations of an
+/// earlier linearization of the same cost, whose gradients are replaced.
 Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& layout,
                          std::vector<DepthEquation>& eliminated);
 

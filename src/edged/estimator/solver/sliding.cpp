@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "edged/estimator/solver/marginalization.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/cost.hpp"
 
 namespace edged {
 namespace {
-
-constexpr double kRestStretch = 10.0;
 
 /// The youngest keyframe becomes the new anchor of landmarks that it observes; its observation and later ones are kept
 /// for that.
@@ -64,7 +63,7 @@ Cost cost_leaving(const Window& window, const std::set<BlockKey>& leaving, const
 KeyframePoint point_of(const Window& window, FeatureId id, const Feature& feature, const ObservationKey& view) {
   const SE3 T_O_A = window.T_O_C(*feature.anchor);
   const Eigen::Vector3d p_O = window.position(feature);
-  double share = std::numeric_limits<double>::infinity();  // of the inverse depth: its sigma
+  double share = std::numeric_limits<double>::infinity();  // sigma of the inverse depth, as a share of it
   for (const auto& [other, observation] : feature.observations) {
     if (other == *feature.anchor) continue;
     const SE3 T_C_O = window.T_O_C(other).inverse();
@@ -77,32 +76,34 @@ KeyframePoint point_of(const Window& window, FeatureId id, const Feature& featur
 }
 
 /// Remaining keyframes keep a record of a landmark whose observations there are marginalized.
-void keep_points(Window& window, FeatureId id, const Feature& feature, const std::optional<ObservationKey>& anchor) {
+void keep_marginalized_points(Window& window, FeatureId id, const Feature& feature,
+                              const std::optional<ObservationKey>& anchor) {
   for (const auto& [view, observation] : feature.observations) {
     if (view.state == feature.anchor->state || (anchor && view.state >= anchor->state)) continue;
-    if (window.states().at(view.state).keyframe) window.keep_point(view, point_of(window, id, feature, view));
+    if (window.states().at(view.state).keyframe)
+      window.add_marginalized_point(view, point_of(window, id, feature, view));
   }
 }
 
 /// All points of a view by the intrinsics that belong to its T_B_C: some were kept when the estimates were others, and
 /// a shift of the principal point is a rotation of the camera.
-void correct_points(const Window& window, KeyframeRecord& record) {
+void correct_points(const Window& window, MarginalizedKeyframe& record) {
   for (std::size_t camera = 0; camera < record.views.size(); ++camera) {
-    if (window.intrinsics(camera).isZero(0.0)) continue;
-    const CameraModel model = window.model(camera);
-    for (KeyframePoint& point : record.views[camera].points)
-      point.point = point_by(model, window.cameras()[camera].given.model, point.point);
+    const WindowCamera& by = window.cameras()[camera];
+    if (by.intrinsics().isZero(0.0)) continue;
+    const CameraModel model = by.model();
+    for (KeyframePoint& point : record.views[camera].points) point.point = point_by(model, by.given.model, point.point);
   }
 }
 
-KeyframeRecord record_of(const Window& window, StateId id) {
+MarginalizedKeyframe record_of(const Window& window, StateId id) {
   const WindowState& state = window.states().at(id);
-  KeyframeRecord record{state.t, state.T_O_B(), {}};
+  MarginalizedKeyframe record{state.t, state.T_O_B(), {}};
   for (std::size_t camera = 0; camera < window.cameras().size(); ++camera) {
-    const SE3 T_B_C = record.T_W_B.inverse() * window.T_O_C({id, camera});
-    const auto kept = state.kept.find(camera);
+    const SE3 T_B_C = record.T_O_B.inverse() * window.T_O_C({id, camera});
+    const auto kept = state.marginalized_points.find(camera);
     record.views.push_back({window.cameras()[camera].given.name, T_B_C, {}});
-    if (kept != state.kept.end()) record.views.back().points = kept->second;
+    if (kept != state.marginalized_points.end()) record.views.back().points = kept->second;
   }
   for (const auto& [feature_id, feature] : window.features()) {
     if (!feature.anchor) continue;
@@ -120,29 +121,29 @@ KeyframeRecord record_of(const Window& window, StateId id) {
 void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto state = window.states().find(id), next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
-  const bool rested = state->second.rested && next->second.rested;
+  const bool rested = state->second.stationary && next->second.stationary;
   // The begin and the end of a standstill are kept: an interval joined across one would lose the standstill factor.
-  const bool between = state->second.rested != next->second.rested;
-  if (between || joined.dt() > max_interval_s * (rested ? kRestStretch : 1.0)) {
+  const bool between = state->second.stationary != next->second.stationary;
+  if (between || joined.dt() > max_interval_s * (rested ? kSolverTuning.rest_stretch : 1.0)) {
     window.make_keyframe(id);
   } else {
     window.drop_state(id, std::move(joined));
   }
 }
 
-KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
+MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
   const StateId id = window.oldest_id();
-  KeyframeRecord record = record_of(window, id);
+  MarginalizedKeyframe record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
-  for (const BlockKey& scalar : window.walking()) leaving.insert(scalar);
+  for (const BlockKey& parameter : window.parameters()) leaving.insert(parameter);
   const Inherited inherited = inherited_landmarks(window);
   for (const auto& [feature_id, anchor] : inherited) {
-    keep_points(window, feature_id, window.features().at(feature_id), anchor);
+    keep_marginalized_points(window, feature_id, window.features().at(feature_id), anchor);
   }
   Cost cost = cost_leaving(window, leaving, inherited);
   const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
-  for (const BlockKey& scalar : window.walking()) {
-    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.begin_piece(scalar.kind, dt_s)));
+  for (const BlockKey& parameter : window.parameters()) {
+    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.propagate_parameter(parameter.kind, dt_s)));
   }
   std::map<FeatureId, NewAnchor> anchors;
   for (const auto& [feature_id, anchor] : inherited) {
@@ -154,13 +155,13 @@ KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config
   return record;
 }
 
-void forget_walk(Window& window, BlockKind kind) {
+void marginalize_parameter(Window& window, BlockKind kind) {
   std::set<BlockKey> leaving;
   for (const BlockKey& key : window.prior()->blocks()) {
     if (key.kind == kind) leaving.insert(key);
   }
   const Cost known{window.prior(), {}, {}};
-  window.end_walk(kind, leaving.empty() ? window.prior()->prior() : marginalize(window, known, leaving));
+  window.remove_parameter(kind, leaving.empty() ? window.prior()->prior() : marginalize(window, known, leaving));
 }
 
 }  // namespace edged

@@ -14,11 +14,18 @@ namespace edged {
 /// keyframes there would replace those with a baseline, and the standstill factor fixes the body between them.
 void drop_or_promote(Window& window, StateId id, double max_interval_s);
 
+/// What the window has estimated of a keyframe when it is marginalized, in the odometry frame.
+struct MarginalizedKeyframe {
+  Timestamp t;
+  SE3 T_O_B;
+  std::vector<KeyframeView> views;
+};
+
 /// Marginalizes the oldest state and returns its record. Landmarks anchored there that are still observed move to the
 /// youngest keyframe with the observations from there on, so that no measurement is used twice.
-KeyframeRecord drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
+MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
 
-/// Removes a random-walk scalar that has jumped, with its factors, and from the prior.
-void forget_walk(Window& window, BlockKind kind);
+/// Removes a random-walk parameter that has jumped, with its factors, and from the prior.
+void marginalize_parameter(Window& window, BlockKind kind);
 
 }  // namespace edged

@@ -11,6 +11,7 @@
 #include "edged/estimator/factors/standstill_factor.hpp"
 #include "edged/estimator/solver/solver.hpp"
 #include "edged/estimator/test_world.hpp"
+#include "edged/estimator/window/cost.hpp"
 
 namespace edged {
 namespace {
@@ -29,7 +30,7 @@ class PositionFactor final : public Factor {
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override {
     return moves_ ? std::make_shared<PositionFactor>(dropped.before, measurements_, true) : nullptr;
   }
-  bool absorb(const Factor& other) override {
+  bool merge(const Factor& other) override {
     const auto* position = dynamic_cast<const PositionFactor*>(&other);
     if (position == nullptr) return false;
     measurements_ += position->measurements_;
@@ -58,13 +59,10 @@ class Sliding : public testing::Test {
     for (int i = 0; i < 4; ++i) {
       const double t = to_seconds(window_.newest().t) + kTrackedPeriod_s;
       const EstimatorInput input = world_.packet(t, kTrackedPeriod_s, false);
-      WindowState state;
-      state.t = input.t;
-      state.pose = to_block(world_.T_W_B(t));
-      Eigen::Map<Eigen::Matrix<double, 9, 1>>(state.motion.data()) << world_.v_W(t), options_.bias_gyro,
-          options_.bias_accel;
+      WindowState state = true_state(world_, t, options_.bias_gyro, options_.bias_accel);
+      state.keyframe = false;
       state.imu = input.motion.reintegrated(options_.bias_gyro, options_.bias_accel);
-      state.rested = i >= 2;
+      state.stationary = i >= 2;
       window_.add_state(std::move(state), input.observations);
     }
     passing_ = window_.oldest_id() + 3;
@@ -169,7 +167,7 @@ TEST_F(Sliding, RecordsOfAKeyframeWhatEachCameraSaw) {
     }
   }
   const SE3 T_O_B = window_.states().at(oldest).T_O_B();
-  const KeyframeRecord record = drop_oldest_keyframe(window_, {});
+  const MarginalizedKeyframe record = drop_oldest_keyframe(window_, {});
   ASSERT_EQ(record.views.size(), 2U);
   for (const std::size_t camera : {0U, 1U}) {
     EXPECT_EQ(record.views[camera].points.size(), seen[camera]);

@@ -8,20 +8,12 @@
 
 #include "edged/estimator/solver/envelope_cholesky.hpp"
 #include "edged/estimator/solver/normal_equations.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
 
 using Eigen::VectorXd;
-
-// Of a matrix with ones on its diagonal. Close to Gauss-Newton: with more damping the scale, common to many blocks,
-// does not converge.
-constexpr double kDamping = 1e-9, kMoreDamping = 1e3;
-constexpr double kConverged = 1e-6;  // a step with a smaller relative decrease of the cost is the last
-
-// After a step that decreases the cost by less than this share the matrix is as good as new: the next step is by the
-// same factorization, with a new gradient (the simplified Newton method).
-constexpr double kSmall = 0.1;
 
 /// What of the linear system is that of the present values.
 enum class Current { All, Gradient, Nothing };
@@ -32,6 +24,25 @@ class Neighbourhood {
   Neighbourhood(Window& window, const Cost& cost)
       : window_(window), cost_(cost), layout_(blocks_of(cost), blocks_of(cost)) {}
 
+  /// Moves the window by a step if that decreases the cost, and returns the cost after the step: infinite if there is
+  /// none.
+  double try_step(Current current, double damping, double cost_before) {
+    if (current == Current::Nothing) linearise();
+    if (current != Current::Gradient && !cholesky_.factorise(H_, damping))
+      return std::numeric_limits<double>::infinity();
+    const VectorXd d = scale_.asDiagonal() * cholesky_.solve(-g_);
+    if (!d.allFinite()) return std::numeric_limits<double>::infinity();
+    const std::vector<double> before = window_.estimates();
+    move(d);
+    const double cost = value_of(window_, cost_);
+    if (!(cost < cost_before)) window_.restore(before);
+    return cost;
+  }
+
+  /// Updates the gradient to the present values; the matrix stays that of the last linearization.
+  void update_gradient() { g_ = scale_.asDiagonal() * gradient(window_, cost_, layout_, eliminated_); }
+
+ private:
   void linearise() {
     eliminated_.clear();
     NormalEquations equations = normal_equations(window_, cost_, layout_, Linearisation::Present, &eliminated_);
@@ -41,21 +52,7 @@ class Neighbourhood {
     g_ = scale_.asDiagonal() * equations.g;
   }
 
-  /// The gradient at the present values; the matrix stays that of linearise().
-  void update_gradient() { g_ = scale_.asDiagonal() * gradient(window_, cost_, layout_, eliminated_); }
-
-  /// False if the system has no solution.
-  bool factorise(double damping) { return cholesky_.factorise(H_, damping); }
-
-  /// The step that solves the system; false if it is not finite.
-  bool step(VectorXd& d) const {
-    d = scale_.asDiagonal() * cholesky_.solve(-g_);
-    return d.allFinite();
-  }
-
-  /// Moves the window; restore() undoes it.
   void move(const VectorXd& d) {
-    before_ = window_.estimates();
     for (const auto& [key, offset] : layout_.offset) {
       window_.move(key, {d.data() + offset, static_cast<std::size_t>(tangent_size(key.kind))});
     }
@@ -70,9 +67,6 @@ class Neighbourhood {
     }
   }
 
-  void restore() { window_.restore(before_); }
-
- private:
   Window& window_;
   const Cost& cost_;
   Layout layout_;
@@ -80,7 +74,6 @@ class Neighbourhood {
   VectorXd scale_, g_;
   Eigen::MatrixXd H_;
   EnvelopeCholesky cholesky_;
-  std::vector<double> before_;
 };
 
 }  // namespace
@@ -92,36 +85,31 @@ SolveSummary solve(Window& window, int max_iterations) {
   summary.usable = std::isfinite(summary.initial_cost);
   if (!summary.usable) return summary;
   Neighbourhood around(window, cost);
-  VectorXd d;
-  double damping = kDamping;
+  double damping = kSolverTuning.damping;
   Current current = Current::Nothing;
   while (summary.iterations < max_iterations) {
     ++summary.iterations;
-    if (current == Current::Nothing) around.linearise();
-    double value = std::numeric_limits<double>::infinity();
-    if ((current == Current::Gradient || around.factorise(damping)) && around.step(d)) {
-      around.move(d);
-      value = value_of(window, cost);
-      if (!(value < summary.final_cost)) around.restore();
-    }
-    if (!(value < summary.final_cost)) {
-      if (current == Current::Gradient) {
-        current = Current::Nothing;  // the matrix is too old
-        --summary.iterations;
-        continue;
-      }
-      if (std::isfinite(value) && value - summary.final_cost <= kConverged * value) break;  // converged
+    const double value = around.try_step(current, damping, summary.final_cost);
+    if (value < summary.final_cost) {
+      const double gain = summary.final_cost - value;
+      summary.final_cost = value;
+      const bool of_new_matrix = current != Current::Gradient;
+      if (of_new_matrix && gain <= kSolverTuning.converged * value) break;
+      // After a small decrease the matrix is as good as new: the next step is by the same factorization, with a new
+      // gradient (the simplified Newton method).
+      const bool undamped = damping == kSolverTuning.damping;
+      const bool keep_matrix = of_new_matrix && undamped && gain < kSolverTuning.keep_matrix * value;
+      current = keep_matrix ? Current::Gradient : Current::Nothing;
+      if (keep_matrix) around.update_gradient();
+      damping = kSolverTuning.damping;
+    } else if (current == Current::Gradient) {
+      current = Current::Nothing;  // the matrix is too old
+      --summary.iterations;
+    } else {
+      if (std::isfinite(value) && value - summary.final_cost <= kSolverTuning.converged * value) break;  // converged
       current = Current::All;
-      damping *= kMoreDamping;
-      continue;
+      damping *= kSolverTuning.damping_factor;
     }
-    const double gain = summary.final_cost - value;
-    summary.final_cost = value;
-    if (current != Current::Gradient && gain <= kConverged * value) break;
-    const bool keep_matrix = current != Current::Gradient && damping == kDamping && gain < kSmall * value;
-    current = keep_matrix ? Current::Gradient : Current::Nothing;
-    if (keep_matrix) around.update_gradient();
-    damping = kDamping;
   }
   return summary;
 }

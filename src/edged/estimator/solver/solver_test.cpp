@@ -105,7 +105,7 @@ void add_landmark(const Window& window, const LandmarkTerm& term, CeresBlocks& a
     }
     blocks.push_back(all.at({BlockKind::InverseDepth, term.id}));
     owned.push_back(std::make_unique<LandmarkCost>(T_B_C, std::move(views), 1.0 / at.weight, at.correlation));
-    problem.AddResidualBlock(owned.back().get(), window.visual_loss(), blocks);
+    problem.AddResidualBlock(owned.back().get(), const_cast<ceres::LossFunction*>(&visual_loss()), blocks);
   }
 }
 
@@ -143,9 +143,8 @@ double solve_with_ceres(const Window& window, CeresBlocks& all, int iterations) 
 
 /// Perturbed landmarks and IMU; errors of a track correlate, calibrations are free.
 Window disturbed_window(TestWorld& world, const TestWorldOptions& options) {
-  Window window = tracked_window(world, options);
+  Window window = tracked_window(world, options, 6, {0.95, 0.8});
   triangulate_features(window, {});
-  window.set_track_noise({0.95, 0.8, 2.0});
   window.free_calibration({});
   int i = 0;
   for (const auto& [id, state] : window.states()) {

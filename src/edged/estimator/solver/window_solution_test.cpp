@@ -22,9 +22,8 @@ double worst_position_error(const Window& window, const TestWorld& world) {
 TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
   for (const auto& [cameras, shared] : {std::pair(1, false), std::pair(2, false), std::pair(2, true)}) {
     SCOPED_TRACE(testing::Message() << cameras << (shared ? " see the same landmarks" : ""));
-    const TestWorldOptions options{.cameras = cameras, .shared_ids = shared, .pixel_noise = 0.0, .imu_noise = 0.0};
-    TestWorld world(options);
-    Window window = tracked_window(world, options);
+    Tracked tracked({.cameras = cameras, .shared_ids = shared, .pixel_noise = 0.0, .imu_noise = 0.0});
+    Window& window = tracked.window;
     triangulate_features(window, {});
     int i = 0;
     for (const auto& [id, state] : window.states()) {
@@ -33,14 +32,14 @@ TEST(Solve, FindsThePosesAgainFromTwoCamerasAndTheImu) {
       window.move({BlockKind::Motion, id}, std::array{0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
     }
     stretch_depths(window, 1.1);
-    ASSERT_GT(worst_position_error(window, world), 0.03);
+    ASSERT_GT(worst_position_error(window, tracked.world), 0.03);
     const SolveSummary summary = solve(window, 30);
     EXPECT_TRUE(summary.usable);
     EXPECT_LT(summary.final_cost, 1e-3 * summary.initial_cost);
-    EXPECT_LT(worst_position_error(window, world), 1e-4);  // 3e-6
+    EXPECT_LT(worst_position_error(window, tracked.world), 1e-4);  // 3e-6
     for (const auto& [id, feature] : window.features()) {
       if (!feature.anchor) continue;
-      EXPECT_LT((window.position(feature) - world.point_W(id)).norm(), 5e-3) << id;
+      EXPECT_LT((window.position(feature) - tracked.world.point_W(id)).norm(), 5e-3) << id;
     }
   }
 }

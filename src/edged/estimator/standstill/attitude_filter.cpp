@@ -4,27 +4,21 @@
 
 #include <algorithm>
 
+#include "edged/estimator/tuning.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
-namespace {
 
-constexpr double kBiasSigma = 0.05;                        // of the gyro of a camera, unknown at first [rad/s]
-constexpr double kFirstMotion = 1.0, kLeastMotion = 0.05;  // sigma of accelerations [m/s^2]
-constexpr double kMotionTime_s = 0.5;                      // for which an acceleration lasts
-constexpr double kMotionMemory_s = 2.0;                    // over which their size is estimated
-
-}  // namespace
-
-/// Gravity is where the accelerometer has it; the heading is zero.
+/// Starts with gravity where the accelerometer has it and the heading zero.
 void AttitudeFilter::begin(const ImuSample& sample) {
   R_W_B_ = Eigen::Quaterniond::FromTwoVectors(sample.accel_B, -kGravity_W);
-  const double tilt = kFirstMotion / kGravity_W.norm();
+  const double tilt = kAttitudeTuning.first_motion / kGravity_W.norm();
   const Eigen::Matrix3d R = R_W_B_.toRotationMatrix();
   P_.setZero();
   P_.topLeftCorner<3, 3>() = R.transpose() * Eigen::Vector3d(tilt * tilt, tilt * tilt, 0.0).asDiagonal() * R;
-  P_.bottomRightCorner<3, 3>().diagonal().setConstant(kBiasSigma * kBiasSigma);
-  motion_variance_ = kFirstMotion * kFirstMotion;
+  P_.bottomRightCorner<3, 3>().diagonal().setConstant(kAttitudeTuning.gyro_bias_sigma *
+                                                      kAttitudeTuning.gyro_bias_sigma);
+  motion_variance_ = kAttitudeTuning.first_motion * kAttitudeTuning.first_motion;
 }
 
 void AttitudeFilter::propagate(const ImuSample& from, const ImuSample& to) {
@@ -35,23 +29,23 @@ void AttitudeFilter::propagate(const ImuSample& from, const ImuSample& to) {
   F.topLeftCorner<3, 3>() = turn.toRotationMatrix().transpose();
   F.topRightCorner<3, 3>() = -dt * Eigen::Matrix3d::Identity();
   P_ = F * P_ * F.transpose();
-  const bool clipped = to.made_up || to.gyro_B.cwiseAbs().maxCoeff() >= noise_.gyro_saturation;
+  const bool clipped = to.interpolated || to.gyro_B.cwiseAbs().maxCoeff() >= noise_.gyro_saturation;
   const double noise = noise_.gyro_noise * (clipped ? noise_.saturation_inflation : 1.0);
   P_.topLeftCorner<3, 3>().diagonal().array() += noise * noise * dt;
   P_.bottomRightCorner<3, 3>().diagonal().array() += noise_.gyro_walk * noise_.gyro_walk * dt;
 }
 
-/// accel_W: the mean specific force of a packet. Accelerations that last for kMotionTime_s are as noise whose variance
-/// over a span is 2 kMotionTime_s / span times theirs.
+/// accel_W: the mean specific force of a packet. Accelerations that last for motion_time_s are as noise whose variance
+/// over a span is 2 motion_time_s / span times theirs.
 void AttitudeFilter::correct(const Eigen::Vector3d& accel_W, double span_s) {
   const Eigen::Vector3d expected = R_W_B_.conjugate() * -kGravity_W,
                         innovation = R_W_B_.conjugate() * accel_W - expected;
-  const double forget = std::min(1.0, span_s / kMotionMemory_s);
+  const double forget = std::min(1.0, span_s / kAttitudeTuning.motion_memory_s);
   motion_variance_ += forget * (innovation.squaredNorm() / 3.0 - motion_variance_);
-  motion_variance_ = std::max(motion_variance_, kLeastMotion * kLeastMotion);
+  motion_variance_ = std::max(motion_variance_, kAttitudeTuning.min_motion * kAttitudeTuning.min_motion);
   Eigen::Matrix<double, 3, 6> H = Eigen::Matrix<double, 3, 6>::Zero();
   H.leftCols<3>() = skew(expected);
-  const double variance = motion_variance_ * std::max(1.0, 2.0 * kMotionTime_s / span_s);
+  const double variance = motion_variance_ * std::max(1.0, 2.0 * kAttitudeTuning.motion_time_s / span_s);
   const Eigen::Matrix3d S = H * P_ * H.transpose() + variance * Eigen::Matrix3d::Identity();
   const Eigen::Matrix<double, 6, 3> K = P_ * H.transpose() * S.inverse();
   const Eigen::Matrix<double, 6, 1> step = K * innovation;
@@ -68,7 +62,7 @@ void AttitudeFilter::add(std::span<const ImuSample> imu) {
   double measured_s = 0.0;
   for (std::size_t i = 1; i < imu.size(); ++i) {
     propagate(imu[i - 1], imu[i]);
-    if (imu[i].made_up) continue;
+    if (imu[i].interpolated) continue;
     const double dt = to_seconds(imu[i].t - imu[i - 1].t);
     sum_W += dt * (R_W_B_ * imu[i].accel_B);
     measured_s += dt;

@@ -18,9 +18,9 @@ class AttitudeFilter {
  public:
   explicit AttitudeFilter(const ImuNoise& noise) : noise_(noise) {}
 
-  /// The samples of one packet; the first is at the end of the packet before.
+  /// Takes the samples of one packet; the first is at the end of the packet before.
   void add(std::span<const ImuSample> imu);
-  /// At the last sample; nothing before the first packet.
+  /// Attitude at the last sample; nothing before the first packet.
   const std::optional<Attitude>& attitude() const { return attitude_; }
   const Eigen::Vector3d& gyro_bias() const { return bias_; }
 
@@ -32,8 +32,8 @@ class AttitudeFilter {
   ImuNoise noise_;
   Eigen::Quaterniond R_W_B_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d bias_ = Eigen::Vector3d::Zero();  ///< [rad/s]
-  Matrix6d P_ = Matrix6d::Zero();                   ///< of the rotation, on the right, and the bias
-  double motion_variance_ = 0.0;                    ///< of accelerations, per axis [m^2/s^4]
+  Matrix6d P_ = Matrix6d::Zero();                   ///< covariance of the rotation, on the right, and the bias
+  double motion_variance_ = 0.0;                    ///< variance of accelerations, per axis [m^2/s^4]
   std::optional<Attitude> attitude_;
 };
 

@@ -51,7 +51,7 @@ class TurningBody {
   std::normal_distribution<double> normal_;
 };
 
-/// Of roll and pitch: the angle between the true and the estimated vertical.
+/// Error of roll and pitch: the angle between the true and the estimated vertical.
 double tilt_error_deg(const Eigen::Quaterniond& truth, const Eigen::Quaterniond& estimate) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   return kDegreesPerRadian * std::acos(std::clamp((truth.conjugate() * up).dot(estimate.conjugate() * up), -1.0, 1.0));
@@ -104,7 +104,7 @@ TEST(AttitudeFilter, AGapMakesItUncertain) {
   for (int i = 0; i < 200; ++i) filter.add(body.packet());
   const double before_deg = tilt_sigma_deg(*filter.attitude());
   std::vector<ImuSample> gap = body.packet();
-  for (ImuSample& sample : gap) sample.made_up = true;
+  for (ImuSample& sample : gap) sample.interpolated = true;
   filter.add(gap);
   EXPECT_GT(tilt_sigma_deg(*filter.attitude()), 5.0 * before_deg);
 }

@@ -48,6 +48,8 @@ class StandstillDetector {
     double gyro = 0.0, accel = 0.0;  ///< [rad/s], [m/s^2]
     Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero(), mean_accel = Eigen::Vector3d::Zero();
   };
+  void buffer(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
+              bool events_quiet);
   Spread spread_over(double window_s) const;
   bool imu_calm(const Spread& spread);
   bool imu_quiet(double window_s);
@@ -56,6 +58,7 @@ class StandstillDetector {
   bool image_turns(const Eigen::Vector3d& rate) const;
   bool only_shakes(const Spread& spread) const;
   std::vector<Eigen::Vector2d> travels() const;
+  std::optional<double> median_travel() const;
 
   struct View {
     Timestamp t;

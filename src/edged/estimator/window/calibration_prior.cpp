@@ -6,11 +6,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -23,6 +25,20 @@ double second_coefficient_sigma(double first, const CameraModel& model) {
   const ByCoefficients by = lens_model(model.distortion()).by_coefficients(model.coefficients(), rim);
   const double second = by.col(1).norm();  // zero at the axis
   return second > 0.0 ? first * by.col(0).norm() / second : 0.0;
+}
+
+/// residual = J (corrections of one, corrections of other), r at the present ones.
+LinearPrior prior_of_pair(const CameraInPair& one, const CameraInPair& other, Eigen::MatrixXd J, Eigen::VectorXd r) {
+  LinearPrior prior;
+  prior.blocks = {{BlockKind::Calibration, one.index}, {BlockKind::Calibration, other.index}};
+  prior.x0 = {{one.calibration.begin(), one.calibration.end()}, {other.calibration.begin(), other.calibration.end()}};
+  prior.J = std::move(J);
+  prior.r = std::move(r);
+  return prior;
+}
+
+Eigen::Map<const CalibrationVector> corrections(const CameraInPair& camera) {
+  return Eigen::Map<const CalibrationVector>(camera.calibration.data());
 }
 
 }  // namespace
@@ -60,8 +76,33 @@ RigCamera corrected_camera(const RigCamera& given, const CalibrationVector& corr
   return found;
 }
 
+LinearPrior equal_calibrations(const CameraInPair& one, const CameraInPair& other) {
+  CalibrationVector weights = CalibrationVector::Constant(1.0 / kFactorTuning.equal_calibration_sigma);
+  weights[kTimeAt] = 0.0;
+  const Eigen::MatrixXd W = weights.asDiagonal();
+  Eigen::MatrixXd J(kCalibrationSize, 2 * kCalibrationSize);
+  J << W, -W;
+  return prior_of_pair(one, other, std::move(J), weights.cwiseProduct(corrections(one) - corrections(other)));
+}
+
+LinearPrior relative_pose_prior(const CameraInPair& one, const CameraInPair& other, const CalibrationConfig& config) {
+  const Eigen::Matrix3d R_one = one.T_B_C.R(), R_other = other.T_B_C.R();
+  const Eigen::Vector3d baseline = R_one.transpose() * (other.T_B_C.translation() - one.T_B_C.translation());
+  Eigen::Matrix<double, 6, 2 * kCalibrationSize> J = Eigen::Matrix<double, 6, 2 * kCalibrationSize>::Zero();
+  J.block<3, 3>(0, 0) = -R_one;
+  J.block<3, 3>(0, kCalibrationSize) = R_other;
+  J.block<3, 3>(3, 0) = skew(baseline);
+  J.block<3, 3>(3, kLeverArmAt) = -R_one.transpose();
+  J.block<3, 3>(3, kCalibrationSize + kLeverArmAt) = R_one.transpose();
+  J.topRows<3>() /= config.relative_rotation_sigma_deg * kDegree;
+  J.bottomRows<3>() /= config.baseline_sigma_mm * 1e-3;
+  Eigen::Matrix<double, 2 * kCalibrationSize, 1> now;
+  now << corrections(one), corrections(other);
+  return prior_of_pair(one, other, J, J * now);
+}
+
 CorrectionEstimate combined(std::span<const CorrectionEstimate> estimates, const CalibrationVector& prior_sigmas) {
-  constexpr double kHeld = 1e-4;  // of the prior's sigma: no recording tells so much
+  constexpr double kHeld = 1e-4;  // share of the prior's sigma: no recording determines so much
   EDGED_CHECK(!estimates.empty(), "no estimate");
   CorrectionEstimate all = estimates.front();
   std::vector<int> free;

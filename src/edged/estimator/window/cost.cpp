@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "edged/estimator/factors/imu_factor.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/depth_terms.hpp"
 
 namespace edged {
@@ -54,6 +55,11 @@ Cost cost_of(const Window& window, Observations observations) {
   return cost;
 }
 
+const ceres::LossFunction& visual_loss() {
+  static const ceres::CauchyLoss loss(kFactorTuning.cauchy_scale);
+  return loss;
+}
+
 std::set<BlockKey> blocks_of(const Cost& cost) {
   std::set<BlockKey> blocks;
   if (cost.prior) blocks.insert(cost.prior->blocks().begin(), cost.prior->blocks().end());
@@ -83,7 +89,8 @@ std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
       const WindowState& state = window.states().at(seen.state);
       if (observations == Observations::OfKeyframes && !state.keyframe) continue;
       const double dt = std::abs(to_seconds(state.t - window.states().at(before.state).t));
-      const double correlation = before.camera == camera ? at_once * std::exp(-dt / window.track_noise().time_s) : 0.0;
+      const double correlation =
+          before.camera == camera ? at_once * std::exp(-dt / kLandmarkTuning.track_correlation_time_s) : 0.0;
       const double own = std::sqrt(1.0 - correlation * correlation);
       steps.push_back({before, seen, correlation, observation->second.sigma * own});
       before = seen;

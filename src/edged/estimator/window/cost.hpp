@@ -3,6 +3,8 @@
 // The cost of a window: one list of terms, for solving and for marginalization.
 #pragma once
 
+#include <ceres/loss_function.h>
+
 #include <set>
 #include <vector>
 
@@ -19,8 +21,8 @@ enum class Observations { All, OfKeyframes };
 /// independent: the first observation of another camera follows the anchor's.
 struct TrackStep {
   ObservationKey before, seen;
-  double correlation;  ///< of the errors of the two
-  double sigma;        ///< of the part that is independent of the observation before, on the unit plane
+  double correlation;  ///< correlation of the errors of the two
+  double sigma;        ///< sigma of the part that is independent of the observation before, on the unit plane
 };
 
 /// The observations of a landmark one after the other: of the anchor's camera from the anchor on, then back in time
@@ -31,7 +33,7 @@ std::vector<TrackStep> track_steps(const Window& window, const Feature& feature,
 /// A residual (2) of a landmark: weight * (e - correlation * e of the residual before).
 struct LandmarkResidual {
   ObservationKey seen;
-  std::size_t place;  ///< of the state in the window, the oldest being 0
+  std::size_t place;  ///< place of the state in the window, the oldest being 0
   ImagePoint point;
   double correlation;  ///< 0 if the one before is the anchor's, which is exact by definition of the landmark
   double weight;       ///< 1 / sigma
@@ -57,6 +59,9 @@ struct Cost {
 };
 
 Cost cost_of(const Window& window, Observations observations = Observations::All);
+
+/// The robust loss of all observations.
+const ceres::LossFunction& visual_loss();
 
 /// The blocks of its terms, without the inverse depths that can be eliminated one by one.
 std::set<BlockKey> blocks_of(const Cost& cost);

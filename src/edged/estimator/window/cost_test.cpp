@@ -18,14 +18,13 @@ namespace {
 StateId add_next(Window& window, bool rested = false) {
   WindowState next = window.newest();
   next.t += std::chrono::milliseconds(200);
-  next.rested = rested;
+  next.stationary = rested;
   return window.add_state(std::move(next));
 }
 
 TEST(Cost, HasHandSetPriorsBeforeMeasurements) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options, 2);
+  Tracked tracked({}, 2);
+  Window& window = tracked.window;
   const StateId last = add_next(window, true);
   window.add_soft_prior(motion_prior({BlockKind::Motion, last}, window.newest().motion, {1.0, 1.0, 1.0}));
   const Cost cost = cost_of(window);
@@ -38,16 +37,14 @@ TEST(Cost, HasHandSetPriorsBeforeMeasurements) {
 }
 
 TEST(Cost, SharesTheFactorsOfTheWindow) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  const Window window = tracked_window(world, options, 3);
+  const Tracked tracked({}, 3);
+  const Window& window = tracked.window;
   EXPECT_EQ(cost_of(window).factors.back(), window.factors().back());
 }
 
 TEST(Cost, IsOfTheBlocksOfItsTermsButForDepthsThatCanBeEliminated) {
-  const TestWorldOptions options{.cameras = 2, .shared_ids = true};
-  TestWorld world(options);
-  Window window = tracked_window(world, options, 4);
+  Tracked tracked({.cameras = 2, .shared_ids = true}, 4);
+  Window& window = tracked.window;
   triangulate_features(window, {});
   const std::set<BlockKey> blocks = blocks_of(cost_of(window));
   for (const auto& [id, state] : window.states()) {
@@ -59,11 +56,9 @@ TEST(Cost, IsOfTheBlocksOfItsTermsButForDepthsThatCanBeEliminated) {
 }
 
 TEST(Cost, HoldsEveryObservationOfALandmarkThatTwoCamerasSeeOnce) {
-  const TestWorldOptions options{.cameras = 2, .shared_ids = true};
-  TestWorld world(options);
-  Window window = tracked_window(world, options, 4);
+  Tracked tracked({.cameras = 2, .shared_ids = true}, 4, {0.9, 0.6});
+  Window& window = tracked.window;
   triangulate_features(window, {});
-  window.set_track_noise({0.9, 0.6, 2.0});
   int seen_by_both = 0;
   for (const LandmarkTerm& term : cost_of(window).landmarks) {
     const Feature& feature = window.features().at(term.id);
@@ -79,13 +74,12 @@ TEST(Cost, HoldsEveryObservationOfALandmarkThatTwoCamerasSeeOnce) {
 }
 
 TEST(Cost, LeavesOutStatesThatAreNoKeyframesWhereTheyWillBeDropped) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options, 3);
+  Tracked tracked({}, 3);
+  Window& window = tracked.window;
   WindowState next = window.newest();
   next.t += std::chrono::milliseconds(200);
   next.keyframe = false;
-  const StateId passing = window.add_state(std::move(next), {world.observe(1.6)});
+  const StateId passing = window.add_state(std::move(next), {tracked.world.observe(1.6)});
   triangulate_features(window, {});
   const auto counts = [&](Observations observations) {
     int count = 0;

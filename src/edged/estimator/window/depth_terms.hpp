@@ -27,7 +27,7 @@ void add_depth_factors(const Window& window, std::vector<std::shared_ptr<const F
 std::optional<double> depth_error_sigmas(const Window& window, StateId state, const RegionDepth& depth,
                                          const LogScale& scale);
 
-/// The largest of these over the depths in the window; 0 without any.
+/// The largest depth_error_sigmas over the depths in the window; 0 without any.
 double worst_depth_error(const Window& window, const LogScale& scale);
 
 }  // namespace edged

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "edged/core/observation.hpp"
-#include "edged/estimator/window/region_depth.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/measurement.hpp"
 
@@ -16,8 +15,8 @@ namespace edged {
 /// One packet, as input of the estimator.
 struct EstimatorInput {
   Timestamp t;
-  /// From the previous input's t to t, if possible with the biases of the newest estimate: otherwise it is integrated
-  /// again.
+  /// IMU from the previous input's t to t, if possible with the biases of the newest estimate: otherwise it is
+  /// integrated again.
   Preintegration motion;
   std::vector<CameraObservations> observations;
   bool keyframe = false;

@@ -8,7 +8,8 @@
 
 #include "edged/camera/two_view.hpp"
 #include "edged/core/statistics.hpp"
-#include "edged/estimator/window/camera_views.hpp"
+#include "edged/estimator/tuning.hpp"
+#include "edged/estimator/window/camera_poses.hpp"
 #include "edged/estimator/window/cost.hpp"
 
 namespace edged {
@@ -43,9 +44,9 @@ void triangulate_feature(Window& window, FeatureId id, const Feature& feature, c
     views.push_back({window.T_O_C(view), window.point(view, observation)});
     sigma = observation.sigma;
   }
-  const auto point = triangulate(views, config.min_parallax_deg * std::numbers::pi / 180.0);
+  const auto point = triangulate(views, kLandmarkTuning.min_parallax_deg * std::numbers::pi / 180.0);
   if (!point || point->rms_residual > config.max_residual_sigma * sigma) return;
-  const auto inverse_depth = inverse_depth_in(window, *anchor, point->p_W, config);
+  const auto inverse_depth = inverse_depth_in(window, *anchor, point->p_A, config);
   if (inverse_depth) window.make_landmark(id, {*anchor, *inverse_depth});
 }
 
@@ -58,8 +59,8 @@ class Fit {
   CameraView at(const ObservationKey& view) const { return views_.at(view.camera, place_.at(view.state)); }
 
  private:
-  CameraViews views_;
-  std::map<StateId, std::size_t> place_;  ///< of a state in the window
+  CameraPoses views_;
+  std::map<StateId, std::size_t> place_;  ///< place of a state in the window
 };
 
 /// Residuals of the observations of a landmark.
@@ -76,7 +77,7 @@ class LandmarkFit {
     return landmark_.error(fit_.at(view), observation.image, e);
   }
 
-  /// Of one observation, in standard deviations; infinite when it is behind the camera.
+  /// Residual of one observation in standard deviations; infinite when it is behind the camera.
   double sigmas(const ObservationKey& view, const WindowObservation& observation) const {
     Eigen::Vector2d e;
     if (!error(view, observation, e)) return std::numeric_limits<double>::infinity();
@@ -85,8 +86,7 @@ class LandmarkFit {
 
   /// Root mean square of the residuals [sigma]; nothing if it has too few observations.
   std::optional<double> rms_sigmas() const {
-    constexpr std::size_t kFewestObservations = 4;
-    if (feature_.observations.size() < kFewestObservations) return std::nullopt;
+    if (feature_.observations.size() < kLandmarkTuning.min_observations) return std::nullopt;
     double sum = 0.0;
     for (const auto& [view, observation] : feature_.observations) {
       if (view != *feature_.anchor) sum += std::pow(sigmas(view, observation), 2);
@@ -111,8 +111,6 @@ std::vector<ObservationKey> bad_observations(const LandmarkFit& fit, const Featu
 
 /// Per camera: the limit for the RMS residual of the landmarks anchored in it [sigma].
 std::vector<double> misfit_limits(const Window& window, const Fit& fit, double max_misfit) {
-  constexpr std::size_t kMinLandmarks = 12;
-  constexpr double kLeastMedian = 0.2;  // [sigma] lower bound of the limit
   std::vector<std::vector<double>> rms(window.cameras().size());
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
@@ -120,8 +118,8 @@ std::vector<double> misfit_limits(const Window& window, const Fit& fit, double m
   }
   std::vector<double> limits;
   for (std::vector<double>& of_camera : rms) {
-    const bool judged = of_camera.size() >= kMinLandmarks;
-    limits.push_back(judged ? max_misfit * std::max(kLeastMedian, median(std::move(of_camera)))
+    const bool judged = of_camera.size() >= kLandmarkTuning.min_landmarks;
+    limits.push_back(judged ? max_misfit * std::max(kLandmarkTuning.min_median_sigma, median(std::move(of_camera)))
                             : std::numeric_limits<double>::infinity());
   }
   return limits;
@@ -130,14 +128,10 @@ std::vector<double> misfit_limits(const Window& window, const Fit& fit, double m
 }  // namespace
 
 void LandmarkConfig::visit(ConfigFields& fields) {
-  fields.add("min_parallax_deg", min_parallax_deg,
-             {"deg", 0.05, 10, "A landmark is triangulated once its rays differ by this angle."});
   fields.add("min_depth_m", min_depth_m, {"m", 0.01, 10, "Nearer landmarks are rejected."});
   fields.add("max_depth_m", max_depth_m, {"m", 1, 1000, "Farther landmarks are rejected."});
   fields.add("max_residual_sigma", max_residual_sigma,
              {"sigma", 1, 20, "Observations with larger residuals are removed."});
-  fields.add("max_innovation_sigma", max_innovation_sigma,
-             {"sigma", 1, 1000, "A track ends when it is farther than this from where the IMU predicts its landmark."});
   fields.add("max_misfit", max_misfit,
              {"", 1, 1000,
               "A landmark is removed as dynamic when its residuals exceed the median landmark's by this factor."});
@@ -181,7 +175,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
   }
 }
 
-std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config) {
+std::vector<FeatureId> reject_unexpected(Window& window) {
   const StateId newest = window.newest_id();
   const Fit fit(window);
   std::vector<FeatureId> unexpected;
@@ -192,11 +186,12 @@ std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& c
       const auto observation = feature.observations.find({newest, camera});
       if (!feature.anchor || observation == feature.observations.end()) continue;
       ++seen;
-      if (LandmarkFit(fit, feature).sigmas(observation->first, observation->second) > config.max_innovation_sigma)
+      if (LandmarkFit(fit, feature).sigmas(observation->first, observation->second) >
+          kLandmarkTuning.max_innovation_sigma)
         far.push_back(id);
     }
     if (2 * far.size() > seen) continue;
-    for (const FeatureId id : far) window.forget_observation(id, {newest, camera});
+    for (const FeatureId id : far) window.remove_observation(id, {newest, camera});
     unexpected.insert(unexpected.end(), far.begin(), far.end());
   }
   return unexpected;
@@ -224,8 +219,8 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
     for (const ObservationKey& view : bad) taken_out.emplace_back(id, view);
     if (window.alive(feature) && (goes || newest_bad)) wrong.push_back(id);
   }
-  for (const auto& [id, view] : taken_out) window.forget_observation(id, view);
-  for (const FeatureId id : gone) window.forget_feature(id);
+  for (const auto& [id, view] : taken_out) window.remove_observation(id, view);
+  for (const FeatureId id : gone) window.remove_feature(id);
   return wrong;
 }
 
@@ -245,7 +240,6 @@ void predict_observations(Window& window) {
 }
 
 std::optional<double> median_residual(const Window& window, std::size_t camera, Newness newness) {
-  constexpr std::size_t kFewestObservations = 12;
   constexpr double kMedianOfNorm = 1.1774;  // of a two-dimensional unit normal
   const StateId newest = window.newest_id();
   const Fit fit(window);
@@ -263,7 +257,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
       before = error;
     }
   }
-  if (residuals.size() < kFewestObservations) return std::nullopt;
+  if (residuals.size() < kLandmarkTuning.min_landmarks) return std::nullopt;
   return median(std::move(residuals)) / kMedianOfNorm;
 }
 

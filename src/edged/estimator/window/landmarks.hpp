@@ -21,7 +21,7 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
 /// Removes observations of the newest state that are far from their prediction by its predicted pose: they are on a
 /// dynamic object, or wrong. If these are most observations of a camera, the prediction is assumed wrong instead.
 /// Returns the features: their tracks should end.
-std::vector<FeatureId> reject_unexpected(Window& window, const LandmarkConfig& config);
+std::vector<FeatureId> reject_unexpected(Window& window);
 
 /// Removes observations that do not fit the solved window, and landmarks whose residuals over all views are larger than
 /// those of the rest of the scene: those of dynamic objects are a little too large everywhere. Returns the features
@@ -39,7 +39,7 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
 std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config);
 
-/// Window::predict of each observation of a landmark where that is due.
+/// Calls Window::predict for each observation of a landmark where that is due.
 void predict_observations(Window& window);
 
 }  // namespace edged

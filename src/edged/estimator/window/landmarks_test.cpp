@@ -39,7 +39,7 @@ void fly(Window& window, TestWorld& world, const Leg& leg = {}) {
 }
 
 Window window_at_truth(TestWorld& world, int states = 6) {
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   fly(window, world, {.states = states});
   return window;
 }
@@ -152,7 +152,7 @@ TEST(TriangulateFeatures, RefusesDepthsOutOfBoundsAndTracksThatContradictThemsel
 TEST(TriangulateFeatures, AnchorsInTheOldestKeyframe) {
   TestWorld world({.pixel_noise = 0.0});
   const FeatureId id = lasting_corner(world);
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   fly(window, world, {.states = 1, .keyframes = false});
   fly(window, world, {.states = 5});
   triangulate_features(window, kGenerous);
@@ -247,10 +247,10 @@ TEST(RejectUnexpected, EndsTracksFarFromWhereTheImuExpectsThem) {
   TestWorld world({});
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
-  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+  EXPECT_THAT(reject_unexpected(window), IsEmpty());
   ASSERT_EQ(fly_on_with_some_off(window, world, 10), 10);
-  EXPECT_EQ(reject_unexpected(window, kGenerous).size(), 10U);
-  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+  EXPECT_EQ(reject_unexpected(window).size(), 10U);
+  EXPECT_THAT(reject_unexpected(window), IsEmpty());
 }
 
 TEST(RejectUnexpected, DoubtsThePredictionWhenItFitsTheLesserPartOnly) {
@@ -258,7 +258,7 @@ TEST(RejectUnexpected, DoubtsThePredictionWhenItFitsTheLesserPartOnly) {
   Window window = window_at_truth(world);
   triangulate_features(window, kGenerous);
   EXPECT_GT(fly_on_with_some_off(window, world, 1000), 10);
-  EXPECT_THAT(reject_unexpected(window, kGenerous), IsEmpty());
+  EXPECT_THAT(reject_unexpected(window), IsEmpty());
 }
 
 TEST(InverseDepthIn, KeepsALandmarkWhereItIsInTheWorld) {

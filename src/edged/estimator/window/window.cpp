@@ -8,12 +8,13 @@
 #include "edged/core/check.hpp"
 #include "edged/estimator/factors/imu_factor.hpp"
 #include "edged/estimator/factors/standstill_factor.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
 
-/// The observations from one state on, up to another.
-void forget(Feature& feature, StateId first, StateId end) {
+/// Removes the observations from one state on, up to another.
+void remove_observations(Feature& feature, StateId first, StateId end) {
   feature.observations.erase(feature.observations.lower_bound({first, 0}), feature.observations.lower_bound({end, 0}));
 }
 
@@ -62,17 +63,15 @@ WindowState window_state(const OdomState& nav, const Eigen::Vector3d& gyro_B, Pr
   return state;
 }
 
-Window::Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth)
-    : prior_(std::make_shared<LinearPriorFactor>(LinearPrior{})),
-      depth_config_(depth),
-      visual_loss_(std::make_unique<ceres::CauchyLoss>(cauchy_scale)) {
+Window::Window(const Rig& rig, const TrackNoise& noise, const DepthFactorConfig& depth)
+    : prior_(std::make_shared<LinearPriorFactor>(LinearPrior{})), track_noise_(noise), depth_config_(depth) {
   for (const RigCamera& given : rig.cameras) {
     WindowCamera& camera = cameras_.emplace_back(WindowCamera{given});
-    camera.model = given.model;
+    camera.linearised_model = given.model;
     camera.calibration[kTimeAt] = to_seconds(given.time_offset);
   }
   free_calibration(CalibrationConfig::fixed());
-  if (depth.enabled) begin_walk(BlockKind::LogScale, 0.0, {depth.scale_sigma, depth.scale_walk});
+  if (depth.enabled) add_parameter(BlockKind::LogScale, 0.0, {depth.scale_sigma, kDepthTuning.scale_walk});
 }
 
 std::size_t Window::camera_index(const std::string& name) const {
@@ -122,12 +121,12 @@ StateId Window::add_state(WindowState state, const std::vector<CameraObservation
   const StateId before = first ? next_state_ : newest_id();
   const WindowState& added = states_.emplace(next_state_, std::move(state)).first->second;
   if (!first) add(std::make_shared<ImuFactor>(before, next_state_, added.imu));
-  if (!first && added.rested) add(std::make_shared<StandstillFactor>(before, next_state_));
+  if (!first && added.stationary) add(std::make_shared<StandstillFactor>(before, next_state_));
   for (const CameraObservations& view : observations) observe(view);
   return next_state_++;
 }
 
-/// The observations of a camera at the newest state.
+/// Takes the observations of a camera at the newest state.
 void Window::observe(const CameraObservations& view) {
   const std::size_t index = camera_index(view.camera);
   WindowCamera& camera = cameras_[index];
@@ -150,7 +149,7 @@ void Window::set_depth(const RegionDepth& depth) {
 
 void Window::add(std::shared_ptr<Factor> factor) {
   check(*factor);
-  const auto same = [&](const auto& other) { return other->blocks() == factor->blocks() && other->absorb(*factor); };
+  const auto same = [&](const auto& other) { return other->blocks() == factor->blocks() && other->merge(*factor); };
   if (std::ranges::none_of(factors_, same)) factors_.push_back(std::move(factor));
 }
 
@@ -167,15 +166,15 @@ void Window::drop_state(StateId id, Preintegration joined) {
     if (is_of(*factor, id)) factor = factor->without(dropped);
     if (factor != nullptr) add(std::move(factor));
   }
-  for (auto& [feature_id, feature] : features_) forget(feature, id, id + 1);
+  for (auto& [feature_id, feature] : features_) remove_observations(feature, id, id + 1);
   states_.erase(leaving);
-  forget_orphaned_factors();
+  remove_orphaned_factors();
 }
 
-void Window::keep_point(const ObservationKey& image, const KeyframePoint& point) {
+void Window::add_marginalized_point(const ObservationKey& image, const KeyframePoint& point) {
   EDGED_CHECK(state(image.state).keyframe && image.camera < cameras_.size(), "state {}, camera {}", image.state,
               image.camera);
-  state(image.state).kept[image.camera].push_back(point);
+  state(image.state).marginalized_points[image.camera].push_back(point);
 }
 
 void Window::drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>& inherited) {
@@ -183,22 +182,22 @@ void Window::drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>
   const StateId oldest = oldest_id();
   for (const auto& [id, anchor] : inherited) {
     make_landmark(id, anchor);
-    forget(feature(id), 0, anchor.key.state);
+    remove_observations(feature(id), 0, anchor.key.state);
   }
   std::erase_if(features_, [&](const auto& entry) {
     const std::optional<ObservationKey>& anchor = entry.second.anchor;
     return anchor && anchor->state == oldest;
   });
-  for (auto& [id, feature] : features_) forget(feature, oldest, oldest + 1);
+  for (auto& [id, feature] : features_) remove_observations(feature, oldest, oldest + 1);
   states_.erase(oldest);
-  for (auto& [kind, scalar] : walking_) {
-    for (const auto& [piece, value] : scalar.pieces()) {
-      for (const auto& factor : factors_) factor->replace({kind, piece}, scalar.present());
+  for (auto& [kind, parameter] : parameters_) {
+    for (const auto& [block, value] : parameter.blocks()) {
+      for (const auto& factor : factors_) factor->replace({kind, block}, parameter.present());
     }
-    scalar.leave_behind();
+    parameter.drop_old();
   }
   set_prior(std::move(prior));
-  forget_orphaned_factors();
+  remove_orphaned_factors();
 }
 
 void Window::set_prior(LinearPrior prior) {
@@ -217,12 +216,12 @@ void Window::make_landmark(FeatureId id, const NewAnchor& anchor) {
   track.inverse_depth = anchor.inverse_depth;
 }
 
-void Window::forget_observation(FeatureId id, const ObservationKey& image) {
+void Window::remove_observation(FeatureId id, const ObservationKey& image) {
   EDGED_CHECK(feature(id).anchor != image, "landmark {} is anchored in state {}", id, image.state);
   feature(id).observations.erase(image);
 }
 
-void Window::forget_ended_tracks() {
+void Window::remove_ended_tracks() {
   std::erase_if(features_, [&](const auto& entry) { return !entry.second.anchor && !alive(entry.second); });
 }
 
@@ -250,7 +249,7 @@ void Window::check(const Factor& factor) const {
   }
 }
 
-void Window::forget_orphaned_factors() {
+void Window::remove_orphaned_factors() {
   const auto orphaned = [&](const auto& factor) {
     return std::ranges::any_of(factor->blocks(), [&](const BlockKey& key) { return block(key) == nullptr; });
   };
@@ -258,27 +257,27 @@ void Window::forget_orphaned_factors() {
   std::erase_if(factors_, orphaned);
 }
 
-void Window::begin_walk(BlockKind kind, double value, const Walk& walk) {
-  const auto [scalar, is_new] = walking_.try_emplace(kind, kind, value, walk.per_root_s);
-  EDGED_CHECK(is_new, "a second scalar of kind {}", static_cast<int>(kind));
-  add_soft_prior(prior_at(scalar->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
+void Window::add_parameter(BlockKind kind, double value, const RandomWalk& walk) {
+  const auto [added, is_new] = parameters_.try_emplace(kind, kind, value, walk.per_root_s);
+  EDGED_CHECK(is_new, "a second parameter of kind {}", static_cast<int>(kind));
+  add_soft_prior(prior_at(added->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
 }
 
-std::optional<BlockKey> Window::walking(BlockKind kind) const {
-  const auto found = walking_.find(kind);
-  return found == walking_.end() ? std::nullopt : std::optional(found->second.present());
+std::optional<BlockKey> Window::parameter(BlockKind kind) const {
+  const auto found = parameters_.find(kind);
+  return found == parameters_.end() ? std::nullopt : std::optional(found->second.present());
 }
 
-std::vector<BlockKey> Window::walking() const {
+std::vector<BlockKey> Window::parameters() const {
   std::vector<BlockKey> present;
-  for (const auto& [kind, scalar] : walking_) present.push_back(scalar.present());
+  for (const auto& [kind, parameter] : parameters_) present.push_back(parameter.present());
   return present;
 }
 
-void Window::end_walk(BlockKind kind, LinearPrior prior) {
-  walking_.erase(kind);
+void Window::remove_parameter(BlockKind kind, LinearPrior prior) {
+  parameters_.erase(kind);
   set_prior(std::move(prior));
-  forget_orphaned_factors();
+  remove_orphaned_factors();
 }
 
 const double* Window::block(BlockKey key) const {
@@ -286,9 +285,9 @@ const double* Window::block(BlockKey key) const {
     const auto found = features_.find(key.id);
     return found == features_.end() || !found->second.anchor ? nullptr : &found->second.inverse_depth;
   }
-  if (const auto scalar = walking_.find(key.kind); scalar != walking_.end()) {
-    const auto found = scalar->second.pieces().find(key.id);
-    return found == scalar->second.pieces().end() ? nullptr : &found->second;
+  if (const auto parameter = parameters_.find(key.kind); parameter != parameters_.end()) {
+    const auto found = parameter->second.blocks().find(key.id);
+    return found == parameter->second.blocks().end() ? nullptr : &found->second;
   }
   if (key.kind == BlockKind::Calibration) {
     return key.id < cameras_.size() ? cameras_[key.id].calibration.data() : nullptr;
@@ -321,8 +320,8 @@ void Window::for_each_block(Self& self, const Visit& visit) {
   for (auto& [id, feature] : self.features_) {
     if (feature.anchor) visit(std::span(&feature.inverse_depth, 1));
   }
-  for (auto& [kind, scalar] : self.walking_) {
-    for (auto& [piece, value] : scalar.pieces()) visit(std::span(&value, 1));
+  for (auto& [kind, parameter] : self.parameters_) {
+    for (auto& [block, value] : parameter.blocks()) visit(std::span(&value, 1));
   }
   for (auto& camera : self.cameras_) visit(std::span(camera.calibration));
   visit(std::span(self.imu_intrinsics_));

@@ -3,8 +3,6 @@
 // The sliding window: states, features and the prior of marginalization.
 #pragma once
 
-#include <ceres/loss_function.h>
-
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,8 +15,7 @@
 #include "edged/estimator/factors/blocks.hpp"
 #include "edged/estimator/factors/landmark_factor.hpp"
 #include "edged/estimator/factors/linear_prior.hpp"
-#include "edged/estimator/window/region_depth.hpp"
-#include "edged/estimator/window/walking_scalar.hpp"
+#include "edged/estimator/window/random_walk_parameter.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/keyframe_record.hpp"
 #include "edged/options/estimator.hpp"
@@ -32,11 +29,11 @@ struct WindowState {
   PoseBlock pose{};
   MotionBlock motion{};
   bool keyframe = false;
-  bool rested = false;  ///< the body did not move since the state before this one
-  Preintegration imu;   ///< from the state before this one; of the window's first state unused
-  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();        ///< gyro sample at t [rad/s]
-  std::optional<RegionDepth> depth;                        ///< of a keyframe: the depth from a depth source
-  std::map<std::size_t, std::vector<KeyframePoint>> kept;  ///< by camera: its records of marginalized landmarks
+  bool stationary = false;  ///< the body did not move since the state before this one
+  Preintegration imu;       ///< from the state before this one; unused in the window's first state
+  Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();                       ///< gyro sample at t [rad/s]
+  std::optional<RegionDepth> depth;                                       ///< from a depth source, at a keyframe
+  std::map<std::size_t, std::vector<KeyframePoint>> marginalized_points;  ///< records of landmarks, by camera
 
   SE3 T_O_B() const { return pose_of(pose.data()); }
   OdomState nav() const;
@@ -53,7 +50,7 @@ struct ObservationKey {
   auto operator<=>(const ObservationKey&) const = default;
 };
 
-/// An observation at its point by the given intrinsics, and by others.
+/// An observation: its point by the given intrinsics, and as a function of the estimated ones.
 struct WindowObservation : FeatureObservation {
   ImagePoint image;
   bool predicted = false;  ///< image has its derivative where the landmark is predicted
@@ -62,12 +59,12 @@ struct WindowObservation : FeatureObservation {
 /// The observations under one id and, once triangulated, their landmark.
 struct Feature {
   std::map<ObservationKey, WindowObservation> observations;  ///< in the window
-  /// By observing camera: the newest state that observed it, even if that has been dropped since.
+  /// The newest state that observed it, even if dropped since; by observing camera.
   std::map<std::size_t, StateId> last_seen;
   std::optional<ObservationKey> anchor;  ///< set when it is a landmark: an observation from a keyframe
   double inverse_depth = 0.0;            ///< [1/m] along z of the anchor camera
 
-  /// By any camera.
+  /// Whether any camera observed it at that state.
   bool seen_at(StateId state) const;
 };
 
@@ -80,22 +77,30 @@ struct NewAnchor {
 /// A camera of the rig, with its estimated calibration and noise.
 struct WindowCamera {
   RigCamera given;
-  CalibrationBlock calibration{};  ///< correction of `given`: Window::calibrated() has both
+  CalibrationBlock calibration{};                                     ///< estimated correction of `given`
   IntrinsicsCorrection linearised_at = IntrinsicsCorrection::Zero();  ///< where the points of its observations are
-  CameraModel model = {};                                             ///< with these corrections
+  CameraModel linearised_model = {};                                  ///< the given one with the corrections there
   double noise_scale = 1.0;                                           ///< multiplies the sigma of its new observations
   StateId last_image = 0;                                             ///< the newest state with an image of it
+
+  /// Estimated corrections of its intrinsics, and the model with these.
+  IntrinsicsCorrection intrinsics() const { return IntrinsicsCorrection(calibration.data() + kIntrinsicsAt); }
+  CameraModel model() const { return corrected_model(given.model, intrinsics()).value_or(given.model); }
+  SE3 T_B_C() const { return camera_pose(SE3(), {}, given.T_B_C, calibration.data()); }
+  /// The camera with its estimated pose relative to the body and its residual time offset. Its model is the given one,
+  /// that of the points of its observations.
+  RigCamera calibrated() const;
 };
 
 /// Read access for all; only its own functions change it, and each keeps its invariants: times and ids of states grow;
 /// features are observed in states of the window and anchored in its keyframes; factors are of blocks in the window. A
-/// violation is a bug (EDGED_CHECK). O is here the frame of this start (S of pipeline/world_frame): measurements in the
-/// world frame must be transformed to it first.
+/// violation is a bug (EDGED_CHECK). O is the frame of this start: measurements in the map frame must be transformed to
+/// it first.
 class Window {
  public:
   /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock. Calibrations are fixed
-  /// until free_calibration().
-  Window(const Rig& rig, double cauchy_scale, const DepthFactorConfig& depth = {});
+  /// until free_calibration(). Without track noise the errors along a track are independent.
+  explicit Window(const Rig& rig, const TrackNoise& noise = {0.0, 0.0}, const DepthFactorConfig& depth = {});
 
   const std::map<StateId, WindowState>& states() const { return states_; }
   StateId oldest_id() const { return states_.begin()->first; }
@@ -107,21 +112,13 @@ class Window {
   const std::shared_ptr<const LinearPriorFactor>& prior() const { return prior_; }
   /// Initial priors: gauge, biases, zero velocity, calibrations.
   const std::vector<std::shared_ptr<LinearPriorFactor>>& soft_priors() const { return soft_priors_; }
-  /// Of measurements, in the order of their states. Landmarks and scene depths are not among them (cost.hpp).
+  /// Factors of measurements, in the order of their states. Landmarks and scene depths are not among them (cost.hpp).
   const std::vector<std::shared_ptr<Factor>>& factors() const { return factors_; }
   const TrackNoise& track_noise() const { return track_noise_; }
   const DepthFactorConfig& depth_config() const { return depth_config_; }
-  ceres::LossFunction* visual_loss() const { return visual_loss_.get(); }
 
   /// Index into cameras(); the rig must have one of that name.
   std::size_t camera_index(const std::string& name) const;
-  /// The camera with its estimated pose relative to the body and its residual time offset. Its model is the given one,
-  /// that of the points of its observations.
-  RigCamera calibrated(std::size_t camera) const;
-  SE3 T_B_C(std::size_t camera) const;
-  /// Estimated corrections of its intrinsics, and the model with these.
-  IntrinsicsCorrection intrinsics(std::size_t camera) const;
-  CameraModel model(std::size_t camera) const;
   /// The point of an observation by the estimated intrinsics, on the unit plane.
   Eigen::Vector2d point(const ObservationKey& image, const WindowObservation& observation) const;
   SE3 T_O_C(const ObservationKey& image) const;
@@ -143,7 +140,7 @@ class Window {
   /// factors define their own replacement.
   void drop_state(StateId id, Preintegration joined);
   /// A keyframe keeps a record of a landmark that is marginalized.
-  void keep_point(const ObservationKey& image, const KeyframePoint& point);
+  void add_marginalized_point(const ObservationKey& image, const KeyframePoint& point);
   /// Removes the oldest state and the landmarks anchored there, except those with a new anchor, which keep the
   /// observations from that state on. `prior` has the information of all that was removed.
   void drop_oldest(LinearPrior prior, const std::map<FeatureId, NewAnchor>& inherited = {});
@@ -157,34 +154,33 @@ class Window {
   /// Makes a feature observed by that camera in a keyframe a landmark.
   void make_landmark(FeatureId id, const NewAnchor& anchor);
   /// Removes an observation, not the anchor's.
-  void forget_observation(FeatureId id, const ObservationKey& image);
-  void forget_feature(FeatureId id) { features_.erase(id); }
+  void remove_observation(FeatureId id, const ObservationKey& image);
+  void remove_feature(FeatureId id) { features_.erase(id); }
   /// Removes tracks that ended before they became landmarks.
-  void forget_ended_tracks();
+  void remove_ended_tracks();
 
-  /// Multiplies the sigmas of the camera's future observations.
+  /// Sets the factor on the sigmas of the camera's future observations.
   void set_noise_scale(std::size_t camera, double scale) { cameras_.at(camera).noise_scale = scale; }
   /// Multiplies the sigmas of all past and future observations of the camera.
   void rescale_noise(std::size_t camera, double factor);
-  /// Without it errors along a track are independent.
-  void set_track_noise(const TrackNoise& noise) { track_noise_ = noise; }
   /// Starts to estimate calibrations, with priors at their present values. Not before scale is known: in slow motion a
   /// rotation of the camera resembles a scale error.
   void free_calibration(const CalibrationConfig& config);
-  /// Corrections known beforehand. Before free_calibration().
+  /// Sets corrections known beforehand. Call it before free_calibration().
   void set_intrinsics(std::size_t camera, const IntrinsicsCorrection& intrinsics);
-  /// Gauge, biases, zero velocity: until one of its blocks is marginalized, when it is absorbed into the prior.
+  /// Adds an initial prior (gauge, biases, zero velocity). It goes into the prior of marginalization with its blocks.
   void add_soft_prior(LinearPrior prior);
 
-  /// Adds a scalar of that kind. With depth factors ln s (Eq. 5) exists from the start.
-  void begin_walk(BlockKind kind, double value, const Walk& walk);
-  /// The present piece of such a scalar, if there is one; those of all scalars.
-  std::optional<BlockKey> walking(BlockKind kind) const;
-  std::vector<BlockKey> walking() const;
-  /// WalkingScalar::begin_piece. The old piece leaves with the oldest state; remaining factors refer to the new one.
-  LinearPrior begin_piece(BlockKind kind, double dt_s) { return walking_.at(kind).begin_piece(dt_s); }
-  /// Removes it with its factors; `prior` is the prior of marginalization without it.
-  void end_walk(BlockKind kind, LinearPrior prior);
+  /// Adds a random-walk parameter of that kind. With depth factors ln s (Eq. 5) exists from the start.
+  void add_parameter(BlockKind kind, double value, const RandomWalk& walk);
+  /// The present block of the parameter of that kind, if there is one; those of all parameters.
+  std::optional<BlockKey> parameter(BlockKind kind) const;
+  std::vector<BlockKey> parameters() const;
+  /// RandomWalkParameter::propagate. The old block leaves with the oldest state; remaining factors refer to the new
+  /// one.
+  LinearPrior propagate_parameter(BlockKind kind, double dt_s) { return parameters_.at(kind).propagate(dt_s); }
+  /// Removes the parameter with its factors; `prior` is the prior of marginalization without it.
+  void remove_parameter(BlockKind kind, LinearPrior prior);
 
   /// The present values of a block, null when it is not in the window.
   const double* block(BlockKey key) const;
@@ -204,7 +200,8 @@ class Window {
   void linearise(const WindowCamera& camera, WindowObservation& observation) const;
   void check(const Factor& factor) const;
   void set_prior(LinearPrior prior);
-  void forget_orphaned_factors();
+  void add_calibration_priors(std::size_t camera, const CalibrationConfig& config);
+  void remove_orphaned_factors();
   /// Calls visit with the values of each block, all in one order.
   template <typename Self, typename Visit>
   static void for_each_block(Self& self, const Visit& visit);
@@ -213,14 +210,13 @@ class Window {
   std::map<FeatureId, Feature> features_;
   std::vector<WindowCamera> cameras_;
   ImuIntrinsicsBlock imu_intrinsics_{};
-  std::map<BlockKind, WalkingScalar> walking_;
+  std::map<BlockKind, RandomWalkParameter> parameters_;
   std::shared_ptr<const LinearPriorFactor> prior_;
   std::vector<std::shared_ptr<LinearPriorFactor>> soft_priors_;
   std::vector<std::shared_ptr<Factor>> factors_;
-  TrackNoise track_noise_{0.0, 0.0, 1.0};
+  TrackNoise track_noise_;
   DepthFactorConfig depth_config_;
   StateId next_state_ = 0;
-  std::unique_ptr<ceres::LossFunction> visual_loss_;
 };
 
 }  // namespace edged

@@ -35,9 +35,8 @@ LinearPrior prior_of(const Window& window, BlockKey pose) {
 }
 
 TEST(Window, HoldsEachTermOfTheCostOnce) {
-  const TestWorldOptions options{.cameras = 2};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.cameras = 2});
+  Window& window = tracked.window;
   EXPECT_EQ(terms_of(window), 3U + 1U + 5U);  // calibrations, gauge, IMU; tracks are no landmarks yet
   triangulate_features(window, {});
   std::size_t observations = 0;
@@ -49,11 +48,9 @@ TEST(Window, HoldsEachTermOfTheCostOnce) {
 }
 
 TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
-  const TestWorldOptions options{.cameras = 2};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.cameras = 2}, 6, {0.9, 0.6});
+  Window& window = tracked.window;
   triangulate_features(window, {});
-  window.set_track_noise({0.9, 0.6, 2.0});
   const double decay = std::exp(-kTrackedPeriod_s / 2.0);
   for (const auto& [modality, correlation] : {std::pair(Modality::Frames, 0.9), std::pair(Modality::Events, 0.6)}) {
     const auto landmark = std::ranges::find_if(window.features(), [&, m = modality](const auto& entry) {
@@ -66,7 +63,7 @@ TEST(Window, TakesLessOfAnErrorOnAnEventFrameForDrift) {
 
 TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
   TestWorld world({.cameras = 2});
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   const auto add = [&](double t, std::size_t camera) { window.add_state(state_at(t), {world.observe(t, camera)}); };
   add(1.0, 0);
   const FeatureId id = window.features().begin()->first;
@@ -79,32 +76,29 @@ TEST(Window, KnowsATrackAliveThroughStatesWithoutAnImageOfItsCamera) {
 }
 
 TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
-  const TestWorldOptions options{.imu_noise = 0.0};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.imu_noise = 0.0});
+  Window& window = tracked.window;
   EXPECT_LT(imu_strain(window), 0.5);
   displace(window, window.newest_id(), {0.0, 0.0, 0.0}, {0.05, 0.0, 0.0});
   EXPECT_GT(imu_strain(window), 2.0);
 }
 
 TEST(Window, HoldsStatesTogetherBetweenWhichTheBodyRested) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked;
+  Window& window = tracked.window;
   WindowState next = window.newest();
   for (const bool rested : {false, true}) {
     const std::size_t before = terms_of(window);
     next.t += std::chrono::milliseconds(200);
-    next.rested = rested;
+    next.stationary = rested;
     window.add_state(next);
     EXPECT_EQ(terms_of(window), before + (rested ? 2 : 1));
   }
 }
 
 TEST(Window, ForgetsSoftPriorsWhoseStateHasLeft) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked;
+  Window& window = tracked.window;
   EXPECT_EQ(window.soft_priors().size(), 3U);  // calibrations of camera and IMU, gauge
   window.drop_oldest({});
   ASSERT_EQ(window.soft_priors().size(), 2U);
@@ -117,7 +111,7 @@ TEST(Window, KnowsThePoseOfTheFirstFrameCameraToTheFirstEventCamera) {
   rig.cameras = {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()},
                  {"frames", Modality::Frames, CameraModel(320, 240, 300, 300, 160, 120), SE3()}};
   rig.cameras[1].T_B_C.translation().x() = 0.05;
-  Window window(rig, 1.0);
+  Window window(rig);
   window.free_calibration({});
   const auto pair =
       std::ranges::find_if(window.soft_priors(), [](const auto& soft) { return soft->blocks().size() == 2; });
@@ -126,7 +120,7 @@ TEST(Window, KnowsThePoseOfTheFirstFrameCameraToTheFirstEventCamera) {
   EXPECT_EQ((*pair)->blocks(), both);
   EXPECT_EQ(window.soft_priors().size(), 4U);  // each camera, the pair, the IMU
   rig.cameras[1].T_B_C = SE3(so3::exp({0.03, 0.0, 0.0}), Eigen::Vector3d(0.0, 0.0, 1e-4));
-  Window of_a_davis(rig, 1.0);
+  Window of_a_davis(rig);
   of_a_davis.free_calibration({});
   EXPECT_EQ(of_a_davis.soft_priors().size(), 3U) << "of one lens a calibration may have one rotation wrong";
 }
@@ -138,7 +132,7 @@ TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
   rig.cameras[1].name = "frames", rig.cameras[1].modality = Modality::Frames;
   rig.cameras.push_back(rig.cameras[1]);
   rig.cameras[2].name = "other", rig.cameras[2].T_B_C.translation().x() = 0.1;
-  Window window(rig, 1.0);
+  Window window(rig);
   window.free_calibration({});
   const auto tie =
       std::ranges::find_if(window.soft_priors(), [](const auto& soft) { return soft->blocks().size() == 2; });
@@ -161,9 +155,8 @@ TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
 }
 
 TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked;
+  Window& window = tracked.window;
   const BlockKey second{BlockKind::Pose, std::next(window.states().begin())->first};
   const BlockKey last{BlockKind::Pose, window.newest_id()};
   window.drop_oldest(prior_of(window, second));
@@ -175,9 +168,8 @@ TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
 }
 
 TEST(Window, ComesBackFromAStepToTheBit) {
-  const TestWorldOptions options{.cameras = 2};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.cameras = 2});
+  Window& window = tracked.window;
   triangulate_features(window, {});
   const std::vector<double> before = window.estimates();
   for (const auto& [id, state] : window.states()) displace(window, id, {0.1, -0.2, 0.3}, {0.01, 0.02, 0.03});
@@ -189,16 +181,15 @@ TEST(Window, ComesBackFromAStepToTheBit) {
 }
 
 TEST(Window, ScalesTheNoiseOfOneCamera) {
-  const TestWorldOptions options{.cameras = 2};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.cameras = 2});
+  Window& window = tracked.window;
   window.rescale_noise(1, 3.0);
   for (const auto& [id, feature] : window.features()) {
     const auto& [view, observation] = *feature.observations.begin();
     EXPECT_DOUBLE_EQ(observation.sigma, (view.camera == 1 ? 3.0 : 1.0) / 200.0);
   }
   window.set_noise_scale(1, 2.0);  // of future observations
-  window.add_state(state_at(3.0), {world.observe(3.0, 1)});
+  window.add_state(state_at(3.0), {tracked.world.observe(3.0, 1)});
   int old = 0, anew = 0;
   for (const auto& [id, feature] : window.features()) {
     for (const auto& [view, observation] : feature.observations) {
@@ -217,7 +208,7 @@ void expect_whole(const Window& window) {
   for (const auto& [id, state] : window.states()) {
     EXPECT_LT(before, state.t);
     before = state.t;
-    for (const auto& [camera, points] : state.kept) EXPECT_LT(camera, window.cameras().size());
+    for (const auto& [camera, points] : state.marginalized_points) EXPECT_LT(camera, window.cameras().size());
   }
   for (const auto& [id, feature] : window.features()) {
     for (const auto& [view, seen] : feature.observations) {
@@ -253,9 +244,8 @@ TEST(Window, IsWholeThroughoutAFlightWithRestAndDepths) {
 }
 
 TEST(Window, HandsOnLandmarksOfItsOldestStateToANewAnchor) {
-  const TestWorldOptions options;
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked;
+  Window& window = tracked.window;
   triangulate_features(window, {});
   const ObservationKey oldest{window.oldest_id(), 0}, anchor{oldest.state + 3, 0};
   std::map<FeatureId, NewAnchor> inherited;
@@ -301,7 +291,7 @@ TEST_F(WindowRefuses, ObservationsOfACameraItDoesNotHave) {
 
 TEST(Window, KeepsWhatEachCameraSeesOfAFeature) {
   TestWorld world({.cameras = 2});
-  Window window(world.rig(), 1.0);
+  Window window(world.rig());
   const FeatureObservation left{7, {0.1, 0.0}, 0.01}, right{7, {-0.1, 0.0}, 0.01};
   const StateId first = window.add_state(state_at(1.0), {{"frames", {left}}, {"events", {right}}});
   const Feature& feature = window.features().at(7);
@@ -309,8 +299,8 @@ TEST(Window, KeepsWhatEachCameraSeesOfAFeature) {
   EXPECT_EQ(feature.observations.at({first, 1}).point, right.point);
   window.make_landmark(7, {{first, 1}, 0.5});
   EXPECT_EQ(track_steps(window, feature).front().seen, (ObservationKey{first, 0}));
-  EXPECT_THROW(window.forget_observation(7, {first, 1}), CheckError);
-  window.forget_observation(7, {first, 0});
+  EXPECT_THROW(window.remove_observation(7, {first, 1}), CheckError);
+  window.remove_observation(7, {first, 0});
   EXPECT_TRUE(track_steps(window, feature).empty());
   window.add_state(state_at(1.1), {{"frames", {}}});
   EXPECT_FALSE(window.alive(feature, 0));
@@ -318,11 +308,9 @@ TEST(Window, KeepsWhatEachCameraSeesOfAFeature) {
 }
 
 TEST(Window, CorrelatesErrorsAlongTheTrackOfEachCamera) {
-  const TestWorldOptions options{.cameras = 2, .shared_ids = true};
-  TestWorld world(options);
-  Window window = tracked_window(world, options);
+  Tracked tracked({.cameras = 2, .shared_ids = true}, 6, {0.9, 0.6});
+  Window& window = tracked.window;
   triangulate_features(window, {});
-  window.set_track_noise({0.9, 0.6, 2.0});
   const double decay = std::exp(-kTrackedPeriod_s / 2.0);
   int seen_by_both = 0;
   for (const auto& [id, feature] : window.features()) {
@@ -353,7 +341,7 @@ TEST_F(WindowRefuses, ToDropAKeyframeOrAStateAtAnEnd) {
 }
 
 TEST_F(WindowRefuses, ToDropItsOnlyState) {
-  Window window(world_.rig(), 1.0);
+  Window window(world_.rig());
   window.add_state(state_at(1.0));
   EXPECT_THROW(window.drop_oldest({}), CheckError);
 }
@@ -378,7 +366,7 @@ TEST_F(WindowRefuses, ToForgetWhereALandmarkIsAnchored) {
   const auto landmark =
       std::ranges::find_if(window_.features(), [](const auto& entry) { return entry.second.anchor.has_value(); });
   ASSERT_NE(landmark, window_.features().end());
-  EXPECT_THROW(window_.forget_observation(landmark->first, *landmark->second.anchor), CheckError);
+  EXPECT_THROW(window_.remove_observation(landmark->first, *landmark->second.anchor), CheckError);
 }
 
 TEST_F(WindowRefuses, PriorsOfWhatItDoesNotHold) {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "edged/core/odom_state.hpp"
-#include "edged/estimator/initialization/start_solver.hpp"
+#include "edged/estimator/initialization/initialization_solver.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/time.hpp"

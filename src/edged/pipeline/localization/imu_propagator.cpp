@@ -17,7 +17,7 @@ void BodyMotion::bridge(std::vector<ImuSample>& imu) const {
 }
 
 Preintegration BodyMotion::predict(std::vector<ImuSample> imu, bool started) {
-  const bool bridged = started && std::ranges::all_of(imu, &ImuSample::made_up);
+  const bool bridged = started && std::ranges::all_of(imu, &ImuSample::interpolated);
   if (bridged) bridge(imu);
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
   const Timestamp t = motion.end();

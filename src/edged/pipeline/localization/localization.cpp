@@ -30,9 +30,12 @@ TrackedImage without(TrackedImage image, const std::vector<FeatureId>& outliers)
   return image;
 }
 
-std::vector<KeyframeRecord> in_map(const SE3& T_M_O, std::vector<KeyframeRecord> in_O) {
-  for (KeyframeRecord& record : in_O) record.T_W_B = T_M_O * record.T_W_B;
-  return in_O;
+/// The records of a step: the public API calls the map frame W.
+std::vector<KeyframeRecord> in_map(const SE3& T_M_O, std::vector<MarginalizedKeyframe> in_O) {
+  std::vector<KeyframeRecord> in_W;
+  for (MarginalizedKeyframe& keyframe : in_O)
+    in_W.push_back({keyframe.t, T_M_O * keyframe.T_O_B, std::move(keyframe.views)});
+  return in_W;
 }
 
 }  // namespace
@@ -176,10 +179,10 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
 void Localization::take_calibrations() {
   constexpr double kMoved = 1e-5;  // a few thousandths of a pixel
   for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
-    rig_.cameras[camera] = estimator_.window().calibrated(camera);
-    intrinsics_[camera] = estimator_.window().intrinsics(camera);
+    rig_.cameras[camera] = estimator_.window().cameras()[camera].calibrated();
+    intrinsics_[camera] = estimator_.window().cameras()[camera].intrinsics();
     if (!lens_models_[camera].holds(intrinsics_[camera], kMoved))
-      lens_models_[camera] = {intrinsics_[camera], estimator_.window().model(camera)};
+      lens_models_[camera] = {intrinsics_[camera], estimator_.window().cameras()[camera].model()};
   }
 }
 
@@ -240,7 +243,7 @@ bool Localization::follow_map(Timestamp t, const VisionOutput& seen, const Estim
     relocalized = mapper_.localize(t, images);
     if (seen.keyframe) mapper_.keyframe(t, images);
   }
-  for (const KeyframeRecord& record : result.marginalized_keyframes) mapper_.take(record);
+  for (const MarginalizedKeyframe& record : result.marginalized_keyframes) mapper_.take(record);
   return relocalized;
 }
 

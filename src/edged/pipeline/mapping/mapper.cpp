@@ -272,18 +272,18 @@ void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   }
 }
 
-void Mapper::take(const KeyframeRecord& record) {
-  record_.refine({record.t, record.T_W_B});
+void Mapper::take(const MarginalizedKeyframe& record) {
+  record_.refine({record.t, record.T_O_B});
   while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
   if (in_window_.empty() || in_window_.front().t != record.t) return;
   MapKeyframe& keyframe = in_window_.front();
   for (MapView& view : keyframe.views)
     place_points(view, *std::ranges::find(record.views, view.camera, &KeyframeView::camera));
   if (!map_.gains_by(keyframe)) return;
-  keyframe.number = record_.add_keyframe({record.t, record.T_W_B});
+  keyframe.number = record_.add_keyframe({record.t, record.T_O_B});
   map_.add(std::move(keyframe));
   in_window_.pop_front();
-  filter_.add_keyframe(odom_to_map_.T_M_O(), record.T_W_B, record.t);
+  filter_.add_keyframe(odom_to_map_.T_M_O(), record.T_O_B, record.t);
   if (const auto superfluous = map_.superfluous(known())) remove_keyframe(*superfluous);
 }
 

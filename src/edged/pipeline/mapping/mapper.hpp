@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "edged/core/odom_state.hpp"
+#include "edged/estimator/solver/sliding.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
@@ -44,7 +45,7 @@ class Mapper {
   /// The packet has become a keyframe, with these images.
   void keyframe(Timestamp t, std::span<const PosedImage> images);
   /// A keyframe has left the window: kept if it is worth it.
-  void take(const KeyframeRecord& record);
+  void take(const MarginalizedKeyframe& record);
 
   /// That pose of the odometry has been published.
   void note(const OdomState& now) { record_.add({now.t, now.T_O_B}); }

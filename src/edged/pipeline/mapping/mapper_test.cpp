@@ -55,7 +55,7 @@ class MapperBeforeAWall : public testing::Test {
   void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B, const TrackedImage& seen) const {
     mapper.predict(now(t_s, T_O_B));
     mapper.keyframe(second(t_s), std::vector{PosedImage{seen, T_O_B * T_B_C_}});
-    KeyframeRecord record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
+    MarginalizedKeyframe record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
     for (const Track& track : seen.tracks) record.views.front().points.push_back({track.id, track.point, 0.5, 0.005});
     mapper.take(record);
   }
@@ -283,7 +283,7 @@ class MapperOfTwoCameras : public MapperBeforeAWall {
     const std::vector<PosedImage> seen = images(SE3(), SE3());
     mapper.predict(now(5.0, SE3()));
     mapper.keyframe(second(5.0), seen);
-    KeyframeRecord record{second(5.0), SE3(), {{"cam", T_B_C_, {}}, {"cam2", T_B_C2_, {}}}};
+    MarginalizedKeyframe record{second(5.0), SE3(), {{"cam", T_B_C_, {}}, {"cam2", T_B_C2_, {}}}};
     for (std::size_t camera = 0; camera < 2; ++camera) {
       for (const Track& track : seen[camera].image.tracks)
         record.views[camera].points.push_back({track.id, track.point, 0.5, 0.005});

@@ -7,9 +7,9 @@
 #include <memory>
 #include <span>
 
+#include "edged/core/observation.hpp"
 #include "edged/depth/depth_prior.hpp"
 #include "edged/depth/landmark_depth.hpp"
-#include "edged/estimator/window/region_depth.hpp"
 #include "edged/options/depth.hpp"
 #include "edged/rig.hpp"
 

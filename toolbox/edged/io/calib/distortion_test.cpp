@@ -88,10 +88,10 @@ TEST(Distortion, ACoefficientThatIsNotSupportedIsNamedInEveryFormat) {
 
 TEST(Distortion, EveryModelTakesItsCoefficientsByEachOfItsNames) {
   for (const LensModel& lens : lens_models()) {
-    if (lens.most == 0) continue;
+    if (lens.max_coefficients == 0) continue;
     std::vector<double> k;
-    for (std::size_t i = 0; i < lens.most; ++i) k.push_back(0.1 + 0.01 * static_cast<double>(i));
-    for (std::string_view name : {lens.name, lens.also[0], lens.also[1], lens.also[2], lens.ros}) {
+    for (std::size_t i = 0; i < lens.max_coefficients; ++i) k.push_back(0.1 + 0.01 * static_cast<double>(i));
+    for (std::string_view name : {lens.name, lens.aliases[0], lens.aliases[1], lens.aliases[2], lens.ros}) {
       if (name.empty()) continue;
       const Distortion distortion = make_distortion(name, k);
       EXPECT_EQ(distortion.model, lens.model) << name;

@@ -64,7 +64,7 @@ void add_cameras(Calibration& out, const Lens& lens, Sees sees) {
 std::string camera_model_names() {
   std::string names;
   for (const LensModel& lens : lens_models())
-    if (lens.of_projection > 0) names += (names.empty() ? "" : ", ") + std::string(lens.name);
+    if (lens.projection_parameters > 0) names += (names.empty() ? "" : ", ") + std::string(lens.name);
   return names;
 }
 
@@ -80,11 +80,11 @@ Distortion distortion_of(const YamlReader& place, const Intrinsics& in) {
 /// lists the coefficients of both.
 void take_camera_model(const YamlReader& camera, const std::string& model, Intrinsics& in) {
   const LensModel* lens = find_lens_model(model);
-  if (!lens || lens->of_projection == 0)
+  if (!lens || lens->projection_parameters == 0)
     camera.at("camera_model")
         .fail("camera model " + model + " is not supported; these are: " + camera_model_names() +
               ", and pinhole with distortion: " + lens_model_names());
-  const std::size_t own = lens->of_projection;
+  const std::size_t own = lens->projection_parameters;
   if (in.projection.size() != own + 4)
     camera.at("intrinsics")
         .fail(fmt::format("must have {} numbers for camera model {}: {} {}, fx fy cx cy", own + 4, lens->name,
@@ -97,11 +97,11 @@ void take_camera_model(const YamlReader& camera, const std::string& model, Intri
     lens = &lens_model(DistortionModel::OmniEquidistant);
     coefficients.insert(coefficients.end(), second.k.begin(), second.k.begin() + 4);
   } else if (second.k != LensCoefficients{}) {
-    if (second.model != DistortionModel::RadTan || lens->most < own + 4 || second.k[4] != 0.0)
+    if (second.model != DistortionModel::RadTan || lens->max_coefficients < own + 4 || second.k[4] != 0.0)
       camera.at("camera_model")
-          .fail(fmt::format(
-              "camera model {} with distortion {} is not supported{}", lens->name, in.distortion,
-              lens->most > own ? "; with radtan (k1 k2 p1 p2), equidistant and none it is" : "; with none it is"));
+          .fail(fmt::format("camera model {} with distortion {} is not supported{}", lens->name, in.distortion,
+                            lens->max_coefficients > own ? "; with radtan (k1 k2 p1 p2), equidistant and none it is"
+                                                         : "; with none it is"));
     coefficients.insert(coefficients.end(), second.k.begin(), second.k.begin() + 4);
   }
   in.projection.erase(begin, end);

@@ -153,9 +153,9 @@ std::string camera_yaml(const RigCamera& camera, const std::string& topic, bool 
                   m.fx(), m.fy(), m.cx(), m.cy());
   if (!topic.empty()) out += "    topic: " + quoted(topic) + "\n";
   const auto& k = m.coefficients();
-  if (const LensModel& lens = lens_model(m.distortion()); lens.most > 0)
+  if (const LensModel& lens = lens_model(m.distortion()); lens.max_coefficients > 0)
     out += fmt::format("    distortion: {}\n    coefficients: [{}]\n", lens.name,
-                       fmt::join(std::span(k).first(lens.most), ", "));
+                       fmt::join(std::span(k).first(lens.max_coefficients), ", "));
   const CameraModel whole(m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy(), m.distortion(), k);
   if (m.view_limit() != whole.view_limit())
     out += fmt::format("    max_angle: {}  # deg off the axis: further out nothing is used\n",

@@ -26,10 +26,11 @@ KalibrLens kalibr_lens(const RigCamera& camera) {
   const LensModel& lens = lens_model(m.distortion());
   const auto& k = m.coefficients();
   KalibrLens out{"pinhole", "none", {}, {}};
-  if (lens.of_projection > 0) {
+  if (lens.projection_parameters > 0) {
     out.camera_model = lens.name;
-    out.intrinsics.assign(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.of_projection));
-    const auto rest = std::span(k).subspan(lens.of_projection, lens.most - lens.of_projection);
+    out.intrinsics.assign(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.projection_parameters));
+    const auto rest =
+        std::span(k).subspan(lens.projection_parameters, lens.max_coefficients - lens.projection_parameters);
     if (std::ranges::any_of(rest, [](double c) { return c != 0.0; })) {
       out.distortion_model = "radtan";
       out.distortion.assign(rest.begin(), rest.end());
@@ -74,7 +75,7 @@ OpenCvLens opencv_lens(const RigCamera& camera) {
         "camera {}: OpenCV has no lens '{}'; choose --lens radtan, rational or equidistant, or --format edged",
         camera.name, lens.name);
   const auto& k = m.coefficients();
-  return {std::string(lens.ros), {k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.most)}};
+  return {std::string(lens.ros), {k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.max_coefficients)}};
 }
 
 }  // namespace

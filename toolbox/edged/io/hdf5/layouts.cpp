@@ -9,6 +9,7 @@
 
 #include "edged/io/hdf5/ecf.hpp"
 #include "edged/io/parse/text_parsing.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 namespace {
@@ -261,7 +262,6 @@ H5Imu::H5Imu(H5Array first, std::optional<H5Array> second, H5Stamps stamps)
 /// For rows with both sensors in an undocumented order. The three columns with gravity are the specific force.
 bool H5Imu::accel_first() const try {
   constexpr std::uint64_t kFirstSamples = 1024;
-  constexpr double kGravity = 9.81;
   const std::uint64_t count = std::min(kFirstSamples, first_.rows());
   const auto values = first_.read<double>(0, count);
   double first = 0, second = 0;

@@ -193,8 +193,8 @@ std::string camera_info_message(Wire wire, Timestamp stamp, std::string_view cam
   out.header(stamp, camera);
   out.numbers(static_cast<std::uint32_t>(model.height()), static_cast<std::uint32_t>(model.width()));
   out.text(lens.ros.empty() ? lens.name : lens.ros);  // our name where ROS has none
-  out.number(static_cast<std::uint32_t>(lens.most));
-  out.numbers({model.coefficients().data(), lens.most});
+  out.number(static_cast<std::uint32_t>(lens.max_coefficients));
+  out.numbers({model.coefficients().data(), lens.max_coefficients});
   const double fx = model.fx(), fy = model.fy(), cx = model.cx(), cy = model.cy();
   out.numbers(std::array{fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0});                 // K
   out.numbers(std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});             // no rectification

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/initialization/start_solver.hpp"
+#include "edged/estimator/initialization/initialization_solver.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -10,7 +10,8 @@
 #include <limits>
 #include <map>
 
-#include "edged/estimator/initialization/baseline_scale.hpp"
+#include "edged/estimator/initialization/stereo_scale.hpp"
+#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 
@@ -19,13 +20,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kMinObservations = 3;  // of a feature
-constexpr double kRayNoise = 5e-3;           // [rad]
-constexpr double kHuber = 1.5;               // [kRayNoise]
-// [m] Algebraic errors of rays are lengths, kRayNoise of the depth of their point: so deep is a usual one.
-constexpr double kUsualDepth = 3.0;
-
-/// Of a track: its point P, then the start.
+/// The unknowns of a track: its point P, then the start.
 using PointAndStart = Eigen::Matrix<double, 12, 1>;
 using PointAndStartMatrix = Eigen::Matrix<double, 12, 12>;
 
@@ -42,13 +37,13 @@ std::vector<StartTrack> gather_tracks(const std::vector<InitFrame>& frames, cons
   }
   std::vector<StartTrack> tracks;
   for (auto& [id, observations] : seen) {
-    if (observations.size() >= kMinObservations) tracks.push_back({id, std::move(observations)});
+    if (observations.size() >= kAlignmentTuning.min_observations) tracks.push_back({id, std::move(observations)});
   }
   return tracks;
 }
 
-/// What the IMU makes of a motion, around the biases that it was integrated with.
-RelativeMotion moved_on(const RelativeMotion& m, const Preintegration& imu) {
+/// The motion after the interval of the IMU, around the biases that it was integrated with.
+RelativeMotion extrapolated(const RelativeMotion& m, const Preintegration& imu) {
   const Vector3d &bg = imu.bias_gyro(), &ba = imu.bias_accel();
   RelativeMotion next;
   next.t = m.t + imu.dt();
@@ -64,7 +59,7 @@ std::vector<RelativeMotion> relative_motion(const std::vector<InitFrame>& frames
                                             const Vector3d& ba, const ImuNoise& noise) {
   std::vector<RelativeMotion> motion(1);
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    motion.push_back(moved_on(motion.back(), {frames[i].imu, bg, ba, noise}));
+    motion.push_back(extrapolated(motion.back(), {frames[i].imu, bg, ba, noise}));
   }
   return motion;
 }
@@ -95,7 +90,7 @@ std::vector<StartVelocity> velocity_equations(const std::vector<InitFrame>& fram
       if (sample == nullptr) continue;
       const Preintegration imu(slice_imu(frames[i].imu, frames[i].imu.front().t, sample->t), bg, ba, noise);
       equations.push_back(
-          velocity_equation(moved_on(motion[i - 1], imu), imu.samples().back().gyro_B - bg, *sample, config));
+          velocity_equation(extrapolated(motion[i - 1], imu), imu.samples().back().gyro_B - bg, *sample, config));
     }
   }
   return equations;
@@ -126,7 +121,7 @@ struct StartEquations {
   StartMatrix H = StartMatrix::Zero();
   Start b = Start::Zero();
 
-  /// Adds those of a track, its point eliminated.
+  /// Adds the equations of a track, its point eliminated.
   void add(const PointAndStartMatrix& N, const PointAndStart& c) {
     const Eigen::LDLT<Matrix3d> P_P(N.topLeftCorner<3, 3>() + 1e-9 * Matrix3d::Identity());
     H += N.bottomRightCorner<9, 9>() - N.bottomLeftCorner<9, 3>() * P_P.solve(N.topRightCorner<3, 9>());
@@ -159,8 +154,8 @@ struct StartEquations {
   }
 };
 
-StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Vector3d& gyro_bias,
-                         const ImuNoise& noise, const StartPriors& priors)
+InitializationSolver::InitializationSolver(const std::vector<InitFrame>& frames, const Rig& rig,
+                                           const Vector3d& gyro_bias, const ImuNoise& noise, const StartPriors& priors)
     : rig_(&rig),
       biases_(priors.biases),
       motion_(relative_motion(frames, gyro_bias, biases_.accel, noise)),
@@ -178,7 +173,7 @@ StartSolver::StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, c
 }
 
 /// Pi_j (P - p_j) = Pi_j R_j p_B_C of every view j.
-void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equations) const {
+void InitializationSolver::add_algebraic(const StartTrack& track, StartEquations& equations) const {
   PointAndStartMatrix N = PointAndStartMatrix::Zero();
   PointAndStart c = PointAndStart::Zero();
   for (const StartObservation& observation : track.observations) {
@@ -196,7 +191,7 @@ void StartSolver::add_algebraic(const StartTrack& track, StartEquations& equatio
 }
 
 /// T_0_C of all frames and cameras, in the frame of the first body.
-std::vector<SE3> StartSolver::camera_poses(const Start& x) const {
+std::vector<SE3> InitializationSolver::camera_poses(const Start& x) const {
   std::vector<SE3> poses;
   for (const RelativeMotion& m : motion_) {
     const SE3 T_0_B(m.R, m.position(x));
@@ -205,49 +200,49 @@ std::vector<SE3> StartSolver::camera_poses(const Start& x) const {
   return poses;
 }
 
-std::vector<Ray> StartSolver::rays_from(std::size_t track, const std::vector<SE3>& cameras) const {
+std::vector<Ray> InitializationSolver::rays_from(std::size_t track, const std::vector<SE3>& cameras) const {
   std::vector<Ray> rays = rays_[track];
   for (std::size_t k = 0; k < rays.size(); ++k)
-    rays[k].centre_W = cameras[pose_index(tracks_[track].observations[k])].translation();
+    rays[k].centre_A = cameras[pose_index(tracks_[track].observations[k])].translation();
   return rays;
 }
 
 /// One Gauss-Newton term around x, with the point of the track optimized and eliminated.
-void StartSolver::add_reprojection(std::size_t track, const std::vector<SE3>& cameras,
-                                   StartEquations& equations) const {
-  if (parallaxes_[track] < kRayNoise) return;
+void InitializationSolver::add_reprojection(std::size_t track, const std::vector<SE3>& cameras,
+                                            StartEquations& equations) const {
+  if (parallaxes_[track] < kAlignmentTuning.ray_sigma) return;
   const auto point = triangulate(rays_from(track, cameras), parallaxes_[track]);
   if (!point) return;
   PointAndStartMatrix N = PointAndStartMatrix::Zero();
   PointAndStart c = PointAndStart::Zero();
   for (const StartObservation& seen : tracks_[track].observations) {
     const SE3& T_0_C = cameras[pose_index(seen)];
-    const Vector3d p_C = T_0_C.inverse() * point->p_W;
-    const Eigen::Vector2d r = (p_C.hnormalized() - seen.point) / kRayNoise;
-    const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(T_0_C.R(), p_C) / kRayNoise;
+    const Vector3d p_C = T_0_C.inverse() * point->p_A;
+    const Eigen::Vector2d r = (p_C.hnormalized() - seen.point) / kAlignmentTuning.ray_sigma;
+    const Eigen::Matrix<double, 2, 3> d_r_d_P = d_seen_d_point(T_0_C.R(), p_C) / kAlignmentTuning.ray_sigma;
     Eigen::Matrix<double, 2, 12> J;
     J << d_r_d_P, -d_r_d_P * motion_[seen.frame].d_position();
-    const double weight = r.norm() < kHuber ? 1.0 : kHuber / r.norm();
+    const double weight = r.norm() < kAlignmentTuning.huber_sigma ? 1.0 : kAlignmentTuning.huber_sigma / r.norm();
     N += weight * J.transpose().lazyProduct(J);
     c -= weight * J.transpose() * r;
   }
   equations.add(N, c);
 }
 
-/// Those around x; what is far off counts for less.
-void StartSolver::add_velocities(const Start& x, StartEquations& equations) const {
+/// Adds the velocities, linearised around x; what is far off counts for less.
+void InitializationSolver::add_velocities(const Start& x, StartEquations& equations) const {
   for (const StartVelocity& velocity : velocities_) {
     const double misfit = (velocity.A * x - velocity.b).norm();
-    const double weight = misfit < kHuber ? 1.0 : kHuber / misfit;
+    const double weight = misfit < kAlignmentTuning.huber_sigma ? 1.0 : kAlignmentTuning.huber_sigma / misfit;
     equations.H += weight * velocity.A.transpose() * velocity.A;
     equations.b -= weight * velocity.A.transpose() * (velocity.A * x - velocity.b);
   }
 }
 
-std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_length) const {
+std::optional<Start> InitializationSolver::linear(const Chosen& chosen, double* free_length) const {
   StartEquations equations;
   for (const std::size_t track : chosen) add_algebraic(tracks_[track], equations);
-  const double same_unit = std::pow(kRayNoise * kUsualDepth, 2);
+  const double same_unit = std::pow(kAlignmentTuning.ray_sigma * kAlignmentTuning.usual_depth_m, 2);
   for (const StartVelocity& velocity : velocities_) {
     equations.H += same_unit * velocity.A.transpose() * velocity.A;
     equations.b += same_unit * velocity.A.transpose() * velocity.b;
@@ -256,7 +251,7 @@ std::optional<Start> StartSolver::linear(const Chosen& chosen, double* free_leng
   return x.allFinite() ? std::optional(x) : std::nullopt;
 }
 
-std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, int iterations) const {
+std::optional<RefinedStart> InitializationSolver::refine(const Chosen& chosen, Start x, int iterations) const {
   const double bias_information = 1.0 / (biases_.accel_sigma * biases_.accel_sigma);
   Eigen::Matrix<double, 8, 8> H;
   Eigen::Matrix<double, 9, 8> free;
@@ -278,7 +273,7 @@ std::optional<RefinedStart> StartSolver::refine(const Chosen& chosen, Start x, i
   return RefinedStart{x, free * H.inverse() * free.transpose()};
 }
 
-Start StartSolver::start_of(const OdomState& last) const {
+Start InitializationSolver::start_of(const OdomState& last) const {
   const RelativeMotion& m = motion_.back();
   const Matrix3d R_0_O = m.R * last.T_O_B.R().transpose();
   Start x;
@@ -287,7 +282,7 @@ Start StartSolver::start_of(const OdomState& last) const {
   return x;
 }
 
-std::vector<double> StartSolver::misfits(const Start& x) const {
+std::vector<double> InitializationSolver::misfits(const Start& x) const {
   const std::vector<SE3> cameras = camera_poses(x);
   std::vector<double> misfits;
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
@@ -298,18 +293,18 @@ std::vector<double> StartSolver::misfits(const Start& x) const {
   return misfits;
 }
 
-double StartSolver::relative_sigma(const RefinedStart& start) const {
-  const auto way_of = [&](const RelativeMotion& m) { return m.position(start.x).norm(); };
+double InitializationSolver::relative_sigma(const RefinedStart& start) const {
+  const auto distance_of = [&](const RelativeMotion& m) { return m.position(start.x).norm(); };
   const RelativeMotion& farthest = *std::max_element(
-      motion_.begin(), motion_.end(), [&](const auto& a, const auto& b) { return way_of(a) < way_of(b); });
-  const Vector3d way = farthest.position(start.x);
-  const Start d_way = farthest.d_position().transpose() * way;
-  return std::sqrt(d_way.dot(start.covariance * d_way)) / way.squaredNorm();
+      motion_.begin(), motion_.end(), [&](const auto& a, const auto& b) { return distance_of(a) < distance_of(b); });
+  const Vector3d baseline = farthest.position(start.x);
+  const Start d_baseline = farthest.d_position().transpose() * baseline;
+  return std::sqrt(d_baseline.dot(start.covariance * d_baseline)) / baseline.squaredNorm();
 }
 
-/// Of each track the first frame that two cameras have it in: later ones have the same errors.
-double StartSolver::baseline_sigma(const Chosen& chosen) const {
-  BaselineScale scale;
+/// Each track counts once, in the first frame that two cameras have it in: later ones have the same errors.
+double InitializationSolver::baseline_sigma(const Chosen& chosen) const {
+  StereoScale scale;
   const auto T_B_C = [&](const StartObservation& seen) -> const SE3& { return rig_->cameras[seen.camera].T_B_C; };
   const auto ray = [&](const StartObservation& seen) { return Vector3d(T_B_C(seen).R() * seen.point.homogeneous()); };
   for (const std::size_t track : chosen) {
@@ -322,7 +317,7 @@ double StartSolver::baseline_sigma(const Chosen& chosen) const {
   return scale.sigma();
 }
 
-Vector3d StartSolver::direction(std::size_t track) const {
+Vector3d InitializationSolver::direction(std::size_t track) const {
   const std::vector<StartObservation>& observations = tracks_[track].observations;
   const StartObservation& observation = observations[observations.size() / 2];
   return motion_[observation.frame].R *

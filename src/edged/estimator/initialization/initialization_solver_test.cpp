@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/initialization/start_solver.hpp"
+#include "edged/estimator/initialization/initialization_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,9 +38,9 @@ class StartOfAMotion : public testing::Test {
   }
 
   const StartPriors priors_{.biases = {.gyro_sigma = 0.02, .accel_sigma = 0.1}};
-  StartSolver solver() const { return {frames_, rig_, options_.bias_gyro, noise_, priors_}; }
-  static StartSolver::Chosen all(const StartSolver& solver) {
-    StartSolver::Chosen chosen(solver.tracks().size());
+  InitializationSolver solver() const { return {frames_, rig_, options_.bias_gyro, noise_, priors_}; }
+  static InitializationSolver::Chosen all(const InitializationSolver& solver) {
+    InitializationSolver::Chosen chosen(solver.tracks().size());
     std::iota(chosen.begin(), chosen.end(), std::size_t{0});
     return chosen;
   }
@@ -55,7 +55,7 @@ class StartOfAMotion : public testing::Test {
 };
 
 TEST_F(StartOfAMotion, GathersTracksOfThreeViewsOrMore) {
-  const StartSolver start = solver();
+  const InitializationSolver start = solver();
   ASSERT_GT(start.tracks().size(), 30U);
   for (const StartTrack& track : start.tracks()) EXPECT_GE(track.observations.size(), 3U);
   ASSERT_EQ(start.motion().size(), frames_.size());
@@ -63,7 +63,7 @@ TEST_F(StartOfAMotion, GathersTracksOfThreeViewsOrMore) {
 }
 
 TEST_F(StartOfAMotion, LinearSolutionHasGravityAndVelocity) {
-  const StartSolver start = solver();
+  const InitializationSolver start = solver();
   double free_length = 0.0;
   const std::optional<Start> x = start.linear(all(start), &free_length);
   ASSERT_TRUE(x);
@@ -74,7 +74,7 @@ TEST_F(StartOfAMotion, LinearSolutionHasGravityAndVelocity) {
 }
 
 TEST_F(StartOfAMotion, RefinementComesCloserAndKnowsHowClose) {
-  const StartSolver start = solver();
+  const InitializationSolver start = solver();
   double free_length = 0.0;
   const std::optional<RefinedStart> refined = start.refine(all(start), *start.linear(all(start), &free_length), 10);
   ASSERT_TRUE(refined);
@@ -95,7 +95,7 @@ TEST_F(StartOfAMotion, TellsATrackThatMovesByItself) {
     feature.id = 5000;
     feature.point = {0.02 * static_cast<double>(i * i % 7), -0.01 * static_cast<double>(i % 3)};
   }
-  const StartSolver start = solver();
+  const InitializationSolver start = solver();
   const auto wrong = std::ranges::find(start.tracks(), FeatureId{5000}, &StartTrack::id);
   ASSERT_NE(wrong, start.tracks().end());
   const auto place = static_cast<std::size_t>(wrong - start.tracks().begin());
@@ -105,7 +105,7 @@ TEST_F(StartOfAMotion, TellsATrackThatMovesByItself) {
 }
 
 TEST_F(StartOfAMotion, DirectionOfATrackPointsAtIt) {
-  const StartSolver start = solver();
+  const InitializationSolver start = solver();
   TestWorld world(options_);
   const StartTrack& track = start.tracks().front();
   const std::size_t middle = track.observations[track.observations.size() / 2].frame;

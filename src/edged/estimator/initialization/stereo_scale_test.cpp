@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/initialization/baseline_scale.hpp"
+#include "edged/estimator/initialization/stereo_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ const Eigen::Vector3d kBaseline(0.1, 0.0, 0.0);
 
 Eigen::Vector3d seen_from(const Eigen::Vector3d& camera, const Eigen::Vector3d& point) { return point - camera; }
 
-/// Of n points at a depth, with a wrong rotation between the cameras about the axis across the baseline.
-BaselineScale scale_at(double depth_m, int n, double sigma, double turned_rad = 0.0) {
-  BaselineScale scale;
+/// The scale by n points at a depth, with a wrong rotation between the cameras about the axis across the baseline.
+StereoScale scale_at(double depth_m, int n, double sigma, double turned_rad = 0.0) {
+  StereoScale scale;
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector3d point(0.02 * i - 0.5, 0.3, depth_m);
     const Eigen::Vector3d second =
@@ -27,8 +27,8 @@ BaselineScale scale_at(double depth_m, int n, double sigma, double turned_rad = 
   return scale;
 }
 
-TEST(BaselineScale, IsWhatTheParallaxTells) {
-  EXPECT_TRUE(std::isinf(BaselineScale().sigma()));
+TEST(StereoScale, IsWhatTheParallaxTells) {
+  EXPECT_TRUE(std::isinf(StereoScale().sigma()));
   const double parallax = 0.1 / 3.0;
   const double alone = std::hypot(0.01, 5e-4 / parallax, 1.0 / std::sqrt(60 * 100.0));
   EXPECT_NEAR(scale_at(3.0, 60, 1e-4).sigma(), alone, 0.1 * alone) << "with good features the calibration decides";
@@ -36,11 +36,11 @@ TEST(BaselineScale, IsWhatTheParallaxTells) {
   EXPECT_TRUE(std::isinf(scale_at(3.0, 10, 1e-4).sigma())) << "few";
 }
 
-TEST(BaselineScale, IsNotMadeOfNoiseWrongRotationOrWrongMatches) {
+TEST(StereoScale, IsNotMadeOfNoiseWrongRotationOrWrongMatches) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 1e-3);
   for (int trial = 0; trial < 100; ++trial) {
-    BaselineScale far;
+    StereoScale far;
     for (int i = 0; i < 60; ++i) {
       const double x1 = noise(random), y1 = noise(random), x2 = noise(random), y2 = noise(random);
       far.add({x1, y1, 1.0}, {x2, y2, 1.0}, kBaseline, 1e-3);
@@ -48,13 +48,13 @@ TEST(BaselineScale, IsNotMadeOfNoiseWrongRotationOrWrongMatches) {
     EXPECT_GT(far.sigma(), 0.2);
   }
   EXPECT_TRUE(std::isinf(scale_at(200.0, 60, 1e-3, 0.004).sigma())) << "rays that diverge";
-  BaselineScale few_wrong = scale_at(200.0, 60, 2e-3);
+  StereoScale few_wrong = scale_at(200.0, 60, 2e-3);
   few_wrong.add({0.3, 0.0, 1.0}, {0.0, 0.0, 1.0}, kBaseline, 2e-3);
   EXPECT_GT(few_wrong.sigma(), 0.1);
 }
 
-TEST(BaselineScale, OfTwoCamerasAtOnePlaceIsUnknown) {
-  BaselineScale scale;
+TEST(StereoScale, OfTwoCamerasAtOnePlaceIsUnknown) {
+  StereoScale scale;
   for (int i = 0; i < 60; ++i) scale.add({0.1, 0.0, 1.0}, {0.0, 0.0, 1.0}, Eigen::Vector3d::Zero(), 1e-3);
   EXPECT_TRUE(std::isinf(scale.sigma()));
 }

@@ -8,7 +8,7 @@
 namespace edged {
 
 /// Collects pairs of rays, of each feature at one instant.
-class BaselineScale {
+class StereoScale {
  public:
   /// Directions in one frame, of any length; baseline: from the first camera to the second in that frame [m]; sigma: of
   /// each ray [rad].

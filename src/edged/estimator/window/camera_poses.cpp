@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/estimator/window/camera_views.hpp"
+#include "edged/estimator/window/camera_poses.hpp"
 
 namespace edged {
 namespace {
@@ -13,9 +13,9 @@ std::vector<SE3> present_poses(const Window& window) {
 
 }  // namespace
 
-CameraViews::CameraViews(const Window& window) : CameraViews(window, present_poses(window)) {}
+CameraPoses::CameraPoses(const Window& window) : CameraPoses(window, present_poses(window)) {}
 
-CameraViews::CameraViews(const Window& window, const std::vector<SE3>& poses)
+CameraPoses::CameraPoses(const Window& window, const std::vector<SE3>& poses)
     : states_(poses.size()), moved_(poses.size(), Vector6d::Zero()) {
   views_.reserve(window.cameras().size() * states_);
   for (const WindowCamera& by : window.cameras()) {
@@ -25,7 +25,7 @@ CameraViews::CameraViews(const Window& window, const std::vector<SE3>& poses)
   }
 }
 
-CameraViews CameraViews::at_first_estimates(const Window& window) {
+CameraPoses CameraPoses::at_first_estimates(const Window& window) {
   std::vector<SE3> poses;
   std::vector<Vector6d> moved;
   for (const auto& [id, state] : window.states()) {
@@ -33,7 +33,7 @@ CameraViews CameraViews::at_first_estimates(const Window& window) {
     poses.push_back(pose_of(pose));
     tangent_difference(BlockKind::Pose, state.pose.data(), pose, moved.emplace_back().data());
   }
-  CameraViews views(window, poses);
+  CameraPoses views(window, poses);
   views.moved_ = std::move(moved);
   return views;
 }

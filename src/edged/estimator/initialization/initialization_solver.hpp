@@ -7,15 +7,25 @@
 #include <vector>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/observation.hpp"
 #include "edged/core/odom_state.hpp"
-#include "edged/estimator/initialization/init_frame.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/measurement.hpp"
 #include "edged/options/estimator.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
 
 struct StartEquations;
+
+/// One view of the start-up buffer, with the IMU before it.
+struct InitFrame {
+  Timestamp t;
+  std::vector<ImuSample> imu;  ///< from the frame before to t; unused in the first frame
+  std::vector<CameraObservations> observations;
+  std::optional<RegionDepth> depth = std::nullopt;  ///< not used by the alignment, but by the window made from it
+  std::vector<ExternalSample> external = {};        ///< within `imu`, in the order of their stamps
+};
 
 /// One view of a feature.
 struct StartObservation {
@@ -80,18 +90,18 @@ struct RefinedStart {
 };
 
 /// Tracks of a start-up buffer, and initializations from some of them. Tracks are given by their index in tracks().
-class StartSolver {
+class InitializationSolver {
  public:
   using Chosen = std::vector<std::size_t>;
 
-  StartSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
-              const ImuNoise& noise, const StartPriors& priors);
+  InitializationSolver(const std::vector<InitFrame>& frames, const Rig& rig, const Eigen::Vector3d& gyro_bias,
+                       const ImuNoise& noise, const StartPriors& priors);
 
   /// Features observed in three views or more.
   const std::vector<StartTrack>& tracks() const { return tracks_; }
-  /// One per frame.
+  /// The motion at each frame, by the IMU.
   const std::vector<RelativeMotion>& motion() const { return motion_; }
-  /// [m/s^2]
+  /// The accelerometer bias of an initialization [m/s^2].
   Eigen::Vector3d accel_bias(const Start& x) const { return biases_.accel + x.tail<3>(); }
 
   /// The linear solution, |g| imposed and the accelerometer bias that of the prior; free_length: |g| without that.
@@ -105,7 +115,7 @@ class StartSolver {
   /// The initialization from which the IMU propagates to a given state at the time of the last view.
   Start start_of(const OdomState& last) const;
 
-  /// Of each track the root mean square of its reprojection errors under an initialization, with its point optimized
+  /// Root mean square of the reprojection errors of each track under an initialization, with its point optimized
   /// [sigma]; infinite if that fails.
   std::vector<double> misfits(const Start& x) const;
 
@@ -130,8 +140,8 @@ class StartSolver {
   BiasPrior biases_;
   std::vector<RelativeMotion> motion_;
   std::vector<StartTrack> tracks_;
-  std::vector<std::vector<Ray>> rays_;  ///< of the tracks; their centres depend on the start
-  std::vector<double> parallaxes_;      ///< of the tracks
+  std::vector<std::vector<Ray>> rays_;  ///< rays of the tracks; their centres depend on the start
+  std::vector<double> parallaxes_;      ///< largest angles of the tracks [rad]
   std::vector<StartVelocity> velocities_;
 };
 
