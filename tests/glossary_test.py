@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Public names keep to docs/glossary.md: no private word in headers, Python module, options, columns and metrics; every public type
-is named there or contains a term of it. Environment: EDGED, the program (without it options are read from the sources)."""
+"""Names keep to docs/glossary.md: no private word in public headers, Python module, options, columns and metrics, no private name in the
+sources of the method; every public type is named there or contains a term of it. Environment: EDGED, the program (without it options are read from the sources)."""
 import json
 import os
 import pathlib
@@ -39,7 +39,7 @@ TERMS = [words_of(row[0]) for row in ALL_TERMS]
 # word -> what may contain it
 FORBIDDEN = {word: [words_of(part) for part in use.split(";")]
              for cell, use in TABLES["Forbidden words"] for word in re.findall("`(.+?)`", cell)}
-ALIASES = {name for row in TABLES["Deprecated aliases"] for name in re.findall("`(.+?)`", row[0])}
+FORBIDDEN_NAMES = {name for cell, _ in TABLES["Forbidden identifiers"] for name in re.findall("`(.+?)`", cell)}
 
 
 def private_words_in(text):
@@ -55,9 +55,8 @@ def private_words_in(text):
 
 
 def split_source(text):
-    """Code without texts, and comments but those of aliases, of a C++ header."""
-    comments = [comment for comment in re.findall(r"//.*", text) if "deprecated" not in comment.lower()]
-    return re.sub(r'//.*|"(?:\\.|[^"\\])*"', "", text), " ".join(comments)
+    """Code without texts, and comments, of a C++ header."""
+    return re.sub(r'//.*|"(?:\\.|[^"\\])*"', "", text), " ".join(re.findall(r"//.*", text))
 
 
 def option_keys():
@@ -81,8 +80,8 @@ def keys_in(tree):
 
 
 class Glossary(unittest.TestCase):
-    def assert_public(self, names, where, aliases=frozenset()):
-        for name in sorted(set(names) - aliases):
+    def assert_public(self, names, where):
+        for name in sorted(set(names)):
             with self.subTest(where=where, name=name):
                 self.assertEqual(private_words_in(name), [])
 
@@ -101,7 +100,7 @@ class Glossary(unittest.TestCase):
         self.assertGreater(len(HEADERS), 9)
         for header in HEADERS:
             code, comments = split_source(header.read_text())
-            self.assert_public([header.name.split(".")[0], *re.findall(r"[A-Za-z_]\w*", code)], header.name, ALIASES)
+            self.assert_public([header.name.split(".")[0], *re.findall(r"[A-Za-z_]\w*", code)], header.name)
             with self.subTest(where=header.name, what="comments"):
                 self.assertEqual(private_words_in(comments), [])
 
@@ -109,6 +108,13 @@ class Glossary(unittest.TestCase):
         for path in sorted((ROOT / "src").rglob("*.[ch]pp")):
             with self.subTest(where=path.name):
                 self.assertEqual(private_words_in(split_source(path.read_text())[1]), [])
+
+    def test_sources_of_the_method_have_no_forbidden_identifiers(self):
+        self.assertGreater(len(FORBIDDEN_NAMES), 30)
+        for path in sorted((ROOT / "src").rglob("*.[ch]pp")):
+            with self.subTest(where=path.name):
+                names = set(re.findall(r"[A-Za-z_]\w*", split_source(path.read_text())[0]))
+                self.assertEqual(names & FORBIDDEN_NAMES, set())
 
     def test_public_types_are_named_by_the_glossary_or_contain_a_term(self):
         named = set(re.findall(r"\w+", " ".join(row[3] for row in ALL_TERMS)))
@@ -125,7 +131,7 @@ class Glossary(unittest.TestCase):
     def test_the_python_module_uses_standard_terms(self):
         for path in MODULE:
             code = re.sub(r'"""(.|\n)*?"""|#.*', "", path.read_text())
-            self.assert_public(re.findall(r"[A-Za-z_]\w*", code), path.name, ALIASES)
+            self.assert_public(re.findall(r"[A-Za-z_]\w*", code), path.name)
 
     def test_options_use_standard_terms(self):
         keys = option_keys()

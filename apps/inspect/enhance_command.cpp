@@ -28,6 +28,7 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/events/accumulate.hpp"
 #include "edged/events/enhance.hpp"
+#include "edged/events/tuning.hpp"
 #include "edged/events/warp.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/odometry.hpp"
@@ -271,8 +272,9 @@ std::vector<std::string> title(const EnhanceOptions& options, const Moment& mome
                   events.size(), 1e3 * to_seconds(step.t - events.front().t), si_number(camera.event_rate_hz), known),
       fmt::format(
           "blur {} px, CLAHE clip {} on {} x {} tiles, lambda {}, gain {}, Canny {} to {}, blend {} event + {} edge",
-          config.blur_sigma_px, config.clahe_clip, config.clahe_tiles, config.clahe_tiles, config.sharpen_lambda,
-          config.edge_gain, config.canny_low, config.canny_high, config.event_weight, config.edge_weight)};
+          config.blur_sigma_px, config.clahe_clip, kEventsTuning.clahe_tiles, kEventsTuning.clahe_tiles,
+          config.sharpen_lambda, config.edge_gain, config.canny_low, config.canny_high, config.event_weight,
+          config.edge_weight)};
 }
 
 int run_enhance(const EnhanceOptions& options) {

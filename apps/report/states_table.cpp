@@ -22,17 +22,6 @@ std::optional<TrackingStatus> parse_status(std::string_view text) {
   return std::nullopt;
 }
 
-/// The present name of a column that version 0.2 wrote under another one.
-std::string present_name(const std::string& column) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 4> kDeprecated = {
-      {{"found_again", "relocalized"},                   // deprecated
-       {"event_survival", "event_track_survival_rate"},  // deprecated
-       {"frame_survival", "frame_track_survival_rate"},  // deprecated
-       {"map_found", "map_matches"}}};                   // deprecated
-  const auto renamed = std::ranges::find(kDeprecated, column, [](const auto& pair) { return pair.first; });
-  return renamed == kDeprecated.end() ? column : renamed->second;
-}
-
 /// The numbers of these columns by row; nothing where one of them is missing or empty.
 template <std::size_t N>
 auto numbers_of(const StatesTable& states, const std::array<const char*, N>& names) {
@@ -82,7 +71,7 @@ StatesTable read_states(const std::filesystem::path& folder) {
   }
   StatesTable table;
   std::vector<std::vector<double>*> columns;
-  for (std::size_t i = 2; i < names.size(); ++i) columns.push_back(&table.columns[present_name(names[i])]);
+  for (std::size_t i = 2; i < names.size(); ++i) columns.push_back(&table.columns[names[i]]);
   while (const auto line = lines.next()) {
     FieldReader fields(line->text);
     const auto t = parse_nanoseconds(fields.next());

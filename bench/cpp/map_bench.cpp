@@ -63,10 +63,10 @@ void BM_RecogniseAPlace(benchmark::State& state) {
                            : Eigen::Vector2d(place(random), place(random)));
   }
   for (auto _ : state) {
-    benchmark::DoNotOptimize(map.recognise({"frames", {}, T_M_K}, descriptors, points, R_O_C, kFocalOfTheMap));
+    benchmark::DoNotOptimize(map.recognize({"frames", {}, T_M_K}, descriptors, points, R_O_C, kFocalOfTheMap));
   }
-  if (!map.recognise({"frames", {}, T_M_K}, descriptors, points, R_O_C, kFocalOfTheMap).T_M_C)
-    state.SkipWithError("not recognised");
+  if (!map.recognize({"frames", {}, T_M_K}, descriptors, points, R_O_C, kFocalOfTheMap).T_M_C)
+    state.SkipWithError("not recognized");
   state.counters["descriptors"] = static_cast<double>(map.keyframes().size()) * kPointsPerKeyframe;
 }
 BENCHMARK(BM_RecogniseAPlace)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);

@@ -101,15 +101,6 @@ class ConfigFields {
     pair_.reset();
   }
 
-  /// A key of an earlier version, renamed or removed. `before` and `now` may be a group: both end with a dot. now: ""
-  /// where the option has become a constant.
-  struct Renamed {
-    std::string_view before, now;
-  };
-  /// Keys of the version before, which set() accepts with a warning that names the new key. The first entry that
-  /// matches is used.
-  void accept(std::span<const Renamed> renamed) { renamed_ = renamed; }
-
   const std::vector<ConfigField>& all() const { return fields_; }
 
   /// Sets one option from text. Throws InputError that names the key, with the nearest known one for a typing error.
@@ -142,7 +133,6 @@ class ConfigFields {
     std::size_t prefix;  ///< length of the prefix inside
     bool second;         ///< its shared options are declared already
   };
-  bool set_known(const std::string& key, const std::string& value);
   bool is_separate(std::string_view name) const;
   /// Below all groups, without "expert.".
   std::string path_of(std::string_view name) const;
@@ -153,7 +143,6 @@ class ConfigFields {
   std::string prefix_;
   std::optional<Audience> audience_;
   std::optional<Pair> pair_;
-  std::span<const Renamed> renamed_;
   std::vector<ConfigField> fields_;
 };
 

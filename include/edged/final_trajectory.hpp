@@ -43,7 +43,4 @@ struct FinalTrajectory {
   std::vector<MappedKeyframe> keyframes;  ///< keyframes that the map still holds
 };
 
-using Hindsight [[deprecated("use FinalTrajectory")]] = FinalTrajectory;
-using FoundPoint [[deprecated("use MapMatch")]] = MapMatch;
-
 }  // namespace edged

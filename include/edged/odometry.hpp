@@ -60,7 +60,6 @@ class Odometry {
   void load_map(std::string_view bytes);
   /// A map was loaded, and the body has not been relocalized in it yet.
   bool awaiting_relocalization() const;
-  [[deprecated("use awaiting_relocalization()")]] bool elsewhere() const { return awaiting_relocalization(); }
   /// The map, for load_map. Nothing while awaiting_relocalization().
   std::optional<std::string> save_map() const;
 
@@ -73,7 +72,6 @@ class Odometry {
   /// last step. Without the map, or without any match, the poses are those of the steps. Not causal. It takes seconds
   /// for an hour of flight, and its record half a megabyte a minute.
   FinalTrajectory final_trajectory() const;
-  [[deprecated("use final_trajectory()")]] FinalTrajectory hindsight() const { return final_trajectory(); }
 
   /// The cameras of the mode with their present online calibration: lens, pose relative to the body, and total time
   /// offset.

@@ -36,14 +36,13 @@ struct PacketizerConfig {
 
 /// The running mean of delta x_last, paper Eq. 2.
 struct AlignmentConfig {
-  double gain = 0.0;    ///< weight of the newest image; 0: off
-  double max_px = 3.0;  ///< bound of the mean
+  double gain = 0.0;  ///< weight of the newest image; 0: off
   void visit(ConfigFields& fields);
 };
 
 /// How the observations of a camera are weighted by the survival rate of its tracks.
 struct HealthConfig {
-  double time_constant_s = 0.3;    ///< of the running mean of the share of tracks that survive an image
+  double time_constant_s = 0.3;    ///< memory of the mean share of tracks that survive an image
   double min_survival_rate = 0.4;  ///< below it the camera's observations are ignored
   int min_event_features = 40;     ///< features kept on event frames while the standard frames have all of theirs
 
@@ -55,7 +54,7 @@ struct StatusConfig {
   double lost_after_s = 2.5;
   int min_landmarks = 8;          ///< landmarks that the newest state must observe for a Good pose
   double degraded_strain = 0.75;  ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
-  double lost_strain = 0.85;      ///< the first time; see StatusJudge
+  double lost_strain = 0.85;      ///< the first time; see StatusMonitor
   void visit(ConfigFields& fields);
 };
 
@@ -68,8 +67,8 @@ struct OdometryConfig {
   EnhanceConfig enhance;
   bool enhance_detect = true;   ///< find features on the enhanced event frame
   bool enhance_track = false;   ///< follow them on it too
-  AlignmentConfig alignment;    ///< of the event frames
-  HealthConfig health;          ///< of each camera
+  AlignmentConfig alignment;    ///< for event frames
+  HealthConfig health;          ///< for each camera
   LowLightConfig low_light;     ///< standard frames in the dark
   TrackerConfig event_tracker;  ///< `tracker.*` sets both trackers, but those of kPerCameraKind
   TrackerConfig frame_tracker;
@@ -78,9 +77,6 @@ struct OdometryConfig {
   DepthConfig depth;
   EstimatorConfig estimator;
   MapConfig map;
-  double quiet_rate_per_pixel = 1.2;  ///< event rate [1/s/px] below which the view is static
-  double max_travel_px = 5.0;         ///< image motion by translation over the events of one event frame
-  double thin_width_px = 400.0;       ///< beside good frames events of sensors twice as wide and more are thinned
   double min_events_per_pixel = 0.1;  ///< a packet with fewer events has no event frame
   StatusConfig status;
 
@@ -99,7 +95,7 @@ struct OdometryConfig {
 /// ms, a frame arrives one readout after the middle of its exposure.
 struct SensorDelays {
   double events_s = 0.05, frames_s = 0.05, imu_s = 0.05;
-  double external_s = 0.05;  ///< of height and velocity sensors; none is waited for before its first sample
+  double external_s = 0.05;  ///< height and velocity sensors; none is waited for before its first sample
 
   /// Throws InputError when one is not within 0 .. 10 s.
   void validate() const;

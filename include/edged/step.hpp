@@ -39,10 +39,11 @@ struct CameraStep {
   /// lower it.
   double survival_rate = 1.0;
 
-  // Of event cameras:
-  std::vector<Event> events = {};  ///< of the packet, oldest first, raw pixels, IMU clock; some were in the one before
-  std::size_t rendered = 0;        ///< number of them, the newest ones, that `image` was rendered from
-  double event_rate_hz = 0.0;      ///< of this packet
+  // Event cameras only.
+  std::vector<Event> events =
+      {};                    ///< events of the packet, oldest first, raw pixels, IMU clock; some were in the one before
+  std::size_t rendered = 0;  ///< number of them, the newest ones, that `image` was rendered from
+  double event_rate_hz = 0.0;  ///< rate within this packet
 
   std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
 };
@@ -59,7 +60,7 @@ struct Step {
   Timestamp t;  ///< the packet's instant, IMU clock
   TrackingStatus status = TrackingStatus::Initializing;
   NavState state;                             ///< at t; meaningful unless status is Initializing
-  std::optional<StateCovariance> covariance;  ///< of state, at most 0.1 s old; nothing before the start
+  std::optional<StateCovariance> covariance;  ///< that of `state`, at most 0.1 s old; nothing before the start
   std::optional<Attitude> attitude;           ///< at t, while Initializing: pure rotation tells no position
   bool keyframe = false;                      ///< this packet became a keyframe
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the

@@ -13,7 +13,7 @@ namespace edged {
 struct Track {
   FeatureId id = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();           ///< in the newest image
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();           ///< the same on the unit plane
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();           ///< `pixel` on the unit plane
   Eigen::Vector2d previous_pixel = Eigen::Vector2d::Zero();  ///< in the image before
   Eigen::Vector2d previous_point = Eigen::Vector2d::Zero();
   Eigen::Vector2d keyframe_pixel = Eigen::Vector2d::Zero();  ///< at the last keyframe; only when in_keyframe

@@ -18,11 +18,6 @@ enum class WarpInterpolation {
   Piecewise,    ///< a constant twist per pair of neighbouring knots
 };
 
-struct DepthGridSettings {
-  int cell_px = 8;
-  double reach_px = 40.0;  ///< cells further from every sample have the scene's depth
-};
-
 /// The d_i of Eq. 2.
 enum class EventDepth {
   Scene,      ///< one depth for all events
@@ -33,8 +28,7 @@ struct EventFrameConfig {
   WarpInterpolation interpolation = WarpInterpolation::Piecewise;
   double saturation_events = 4.0;  ///< b_max: this many events on one pixel (before the blur) are white
   EventDepth depth = EventDepth::Landmarks;
-  DepthGridSettings depth_grid;  ///< with EventDepth::Landmarks
-  double blur_sigma_px = 0.8;    ///< Gaussian on the sum, before the scaling; 0: none
+  double blur_sigma_px = 0.8;  ///< Gaussian on the sum, before the scaling; 0: none
 
   void visit(ConfigFields& fields);
 };
@@ -46,7 +40,7 @@ enum class EdgeMethod {
   Canny,      ///< one pixel wide, 0 or 255
   Laplacian,  ///< magnitude of the second derivative, four neighbours
   Sobel,      ///< magnitude of the slope, 3x3
-  Scharr,     ///< the same with a kernel of better rotational symmetry
+  Scharr,     ///< as Sobel, with a kernel of better rotational symmetry
 };
 
 enum class Sharpening {
@@ -64,10 +58,8 @@ struct EnhanceConfig {
   EdgeMethod method = EdgeMethod::None;
   double blur_sigma_px = 0.8;
   double clahe_clip = 2.0;
-  static constexpr int clahe_tiles = 4;
   Sharpening sharpening = Sharpening::None;
   double sharpen_lambda = 0.5;
-  static constexpr double unsharp_sigma_px = 2.0;
   double edge_gain = 2.0;
   MagnitudeNorm norm = MagnitudeNorm::L2;
   double canny_low = 8.0;

@@ -20,7 +20,7 @@ struct DetectorConfig {
   CornerKind corners = CornerKind::FastHarris;
   int max_features = 120;
   double cell_px = 20.0;
-  int levels = 1;  ///< scales the corners are found at, each kLevelFactor coarser than the one before
+  int levels = 1;  ///< scales the corners are found at, each 1.2 times coarser than the one before (as in ORB)
   double separation_px = 8.0;
   int border_px = 8;
   int fast_threshold = 20;
@@ -28,16 +28,12 @@ struct DetectorConfig {
   double min_gradient = 2.0;
   bool subpixel = false;
 
-  static constexpr double kLevelFactor = 1.2;  ///< as ORB
-
   void visit(ConfigFields& fields);
 };
 
 struct KltConfig {
   int window_px = 11;
   int levels = 3;
-  static constexpr int iterations = 20;
-  static constexpr double epsilon_px = 0.005;
   double min_gradient = 1.0;
 
   void visit(ConfigFields& fields);
@@ -47,9 +43,6 @@ struct OutlierConfig {
   double threshold_px = 2.0;
   double rotation_only_px = 1.0;
   double rotation_gate_px = 6.0;
-  static constexpr double fallback_share = 0.6;
-  static constexpr double min_share = 0.3;
-  static constexpr int iterations = 100;
 
   void visit(ConfigFields& fields);
 };
@@ -57,12 +50,11 @@ struct OutlierConfig {
 /// When a patch in an image matches the stored one.
 struct PatchConfig {
   double min_similarity = 0.8;  ///< normalised cross correlation
-  static constexpr int iterations = 10;
   void visit(ConfigFields& fields);
 };
 
 /// The reference patch of a corner, which images are aligned to.
-struct TemplateConfig {
+struct ReferencePatchConfig {
   bool enabled = true;
   PatchConfig patch;
 
@@ -72,9 +64,7 @@ struct TemplateConfig {
 /// Landmarks that several cameras share.
 struct StereoConfig {
   bool enabled = true;
-  static constexpr double nearest_m = 0.3;  ///< z-depth from which features of unknown depth are searched
-  double max_epipolar_px = 2.0;             ///< on the axis of the lens
-  static constexpr PatchConfig patch = {};
+  double max_epipolar_px = 2.0;  ///< on the axis of the lens
 
   void visit(ConfigFields& fields);
 };
@@ -83,14 +73,11 @@ struct TrackerConfig {
   DetectorConfig detector;
   KltConfig klt;
   OutlierConfig outliers;
-  TemplateConfig templates;
+  ReferencePatchConfig reference_patches;
   double forward_backward_px = 1.0;
   // The appearance of an event frame depends on the motion: at 0.7 its tracks last a third as long.
   double min_correlation = 0.3;
-  static constexpr double border_px = 4.0;
   double merge_px = 3.0;
-  static constexpr double retry_share = 0.5;
-  static constexpr double refill_share = 0.5;
   double sigma_px = 1.0;
 
   void visit(ConfigFields& fields);
@@ -101,19 +88,13 @@ struct KeyframeConfig {
   double parallax_deg = 1.5;
   double rotation_deg = 10.0;
   int min_tracks = 15;
-  static constexpr double starved_interval_s = 0.2;
-  static constexpr double min_interval_s = 0.05;
   double max_interval_s = 0.5;
-  static constexpr double still_parallax_deg = 0.2;
 
   void visit(ConfigFields& fields);
 };
 
 struct LowLightConfig {
   double below_range = 80.0;  ///< images with fewer grey levels between dark and bright quantiles are stretched
-  static constexpr double target_range = 160.0;  ///< to so many
-  static constexpr double max_gain = 12.0;
-  static constexpr double smoothing_px = 1.0;  ///< standard deviation of the blur before it
   void visit(ConfigFields& fields);
 };
 

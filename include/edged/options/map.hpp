@@ -10,18 +10,13 @@ namespace edged {
 
 /// Which keyframes the map keeps, and which of their map points are searched for.
 struct KeyframeMapConfig {
-  static constexpr double min_interval_s = 0.3;  ///< between keyframes that the map keeps
   double max_covered =
       0.5;              ///< share of a keyframe's view that the map covers already: above it, the keyframe is dropped
   int min_points = 15;  ///< a keyframe with fewer well-observed points is dropped
   int max_points = 60;  ///< kept of a keyframe
-  static constexpr double max_depth_error = 0.1;  ///< sigma of a point's inverse depth, as a share of it
-  double min_known_s = 4.0;          ///< since the start of the estimator: earlier keyframes have an inaccurate scale
-  double min_age_s = 2.0;            ///< younger keyframes share their points with the window
-  double max_view_angle_deg = 35.0;  ///< between the rays of a point now and then
-  static constexpr double max_scale = 1.5;  ///< a point is at most so much nearer or farther than then
-  int max_keyframes = 1000;                 ///< kept
-  int candidates = 30;                      ///< nearest keyframes that are searched for an image
+  double min_known_s = 4.0;  ///< since the start of the estimator: earlier keyframes have an inaccurate scale
+  double min_age_s = 2.0;    ///< younger keyframes share their points with the window
+  int max_keyframes = 1000;  ///< kept
   void visit(ConfigFields& fields);
 };
 
@@ -30,7 +25,7 @@ struct MapFilterConfig {
   double drift_m = 0.002;  ///< drift of the odometry in 1 s, each axis
   double drift_yaw_deg = 0.2;
   double drift_tilt_deg = 0.4;
-  double pixel_sigma = 2.0;  ///< of a map match [px]; its errors repeat from image to image
+  double pixel_sigma = 2.0;  ///< sigma of a map match [px]; its errors repeat from image to image
   int min_observations = 8;
   double min_found_share = 0.4;
   double max_misfit = 0.75;  ///< median residual of the map matches after the update [sigma]

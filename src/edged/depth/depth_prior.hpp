@@ -13,10 +13,10 @@ namespace edged {
 
 /// The scene depth d_t of the central region (paper section on the depth module; Eq. 4, 5).
 struct DepthEstimate {
-  Timestamp t;             ///< of the newest measurement used, not of the computation
+  Timestamp t;             ///< stamp of the newest measurement used, not of the computation
   double depth_m = 0.0;    ///< median z-depth of the region
   double sigma_ln = 0.0;   ///< standard deviation of ln depth_m, growing with the estimate's age
-  double spread_ln = 0.0;  ///< of ln depth within the region (robust), 0 where not known
+  double spread_ln = 0.0;  ///< robust deviation of ln depth within the region, 0 where not known
 };
 
 /// A landmark observed at some instant.

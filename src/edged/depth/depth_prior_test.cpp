@@ -186,7 +186,7 @@ TEST(NetworkDepthPrior, RunsTheModelsThatShip) {
 }
 
 TEST(ScaleEstimate, LearnsARatioAndWithstandsOutliers) {
-  ScaleEstimate scale{ScaleConfig()};
+  ScaleEstimate scale;
   for (int i = 0; i < 100; ++i) {
     scale.update(at_ms(50.0 * i), std::log(2.0));
     if (i % 10 == 9) scale.update(at_ms(50.0 * i), std::log(50.0));
@@ -196,7 +196,7 @@ TEST(ScaleEstimate, LearnsARatioAndWithstandsOutliers) {
 }
 
 TEST(ScaleEstimate, ForgetsSlowly) {
-  ScaleEstimate scale{ScaleConfig()};
+  ScaleEstimate scale;
   for (int i = 0; i < 400; ++i) scale.update(at_ms(50.0 * i), 0.7);
   for (int i = 400; i < 800; ++i) scale.update(at_ms(50.0 * i), -0.3);
   EXPECT_NEAR(scale.ln_scale(), -0.3, 0.05);

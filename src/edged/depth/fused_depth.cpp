@@ -10,9 +10,9 @@ namespace edged {
 void ScaleEstimate::update(Timestamp t, double ln_ratio) {
   const double dt = t_ ? std::max(0.0, to_seconds(t - *t_)) : 0.0;
   t_ = t;
-  const double variance = sigma_ * sigma_ + config_.walk * config_.walk * dt;
+  const double variance = sigma_ * sigma_ + kSceneDepthTuning.scale_walk * kSceneDepthTuning.scale_walk * dt;
   const double innovation = ln_ratio - ln_scale_;
-  double noise = config_.measurement_sigma * config_.measurement_sigma;
+  double noise = kSceneDepthTuning.scale_measurement_sigma * kSceneDepthTuning.scale_measurement_sigma;
   const double sigmas = std::abs(innovation) / std::sqrt(variance + noise);
   if (sigmas > 2.0) noise *= sigmas / 2.0 * (sigmas / 2.0);
   const double gain = variance / (variance + noise);
@@ -20,9 +20,8 @@ void ScaleEstimate::update(Timestamp t, double ln_ratio) {
   sigma_ = std::sqrt((1.0 - gain) * variance);
 }
 
-FusedDepth::FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network,
-                       const ScaleConfig& scale)
-    : constant_(constant), landmarks_(std::move(landmarks)), network_(std::move(network)), scale_(scale) {}
+FusedDepth::FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network)
+    : constant_(constant), landmarks_(std::move(landmarks)), network_(std::move(network)) {}
 
 void FusedDepth::add_events(std::span<const Event> events) {
   const int before = network_->inferences();

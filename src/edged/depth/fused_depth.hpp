@@ -7,14 +7,12 @@
 
 #include "edged/depth/landmark_depth.hpp"
 #include "edged/depth/network_depth.hpp"
-#include "edged/options/depth.hpp"
+#include "edged/depth/tuning.hpp"
 
 namespace edged {
 
 class ScaleEstimate {
  public:
-  explicit ScaleEstimate(const ScaleConfig& config) : config_(config), sigma_(config.prior_sigma) {}
-
   /// ln of the true depth over the source's; beyond two sigma it weighs less, so that an outlier moves ln s little.
   void update(Timestamp t, double ln_ratio);
 
@@ -22,8 +20,7 @@ class ScaleEstimate {
   double sigma() const { return sigma_; }
 
  private:
-  ScaleConfig config_;
-  double ln_scale_ = 0.0, sigma_;
+  double ln_scale_ = 0.0, sigma_ = kSceneDepthTuning.scale_sigma;
   std::optional<Timestamp> t_;
 };
 
@@ -31,8 +28,7 @@ class ScaleEstimate {
 /// constant. s is estimated while both are available.
 class FusedDepth : public DepthPrior {
  public:
-  FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network,
-             const ScaleConfig& scale);
+  FusedDepth(ConstantDepth constant, LandmarkDepth landmarks, std::unique_ptr<NetworkDepth> network);
 
   void add_events(std::span<const Event> events) override;
   void add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) override {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "edged/core/statistics.hpp"
+#include "edged/depth/tuning.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {
@@ -16,16 +17,12 @@ CentralRegion::CentralRegion(const CameraModel& camera, double share) {
   high = camera.pixel_to_point(Eigen::Vector2d(region.x + region.width - 0.5, region.y + region.height - 0.5));
 }
 
-LandmarkDepth::LandmarkDepth(const CameraModel& camera, double region_share, const LandmarkDepthConfig& config,
-                             const DepthFilterConfig& filter)
-    : config_(config), region_(camera, region_share), filter_(filter) {}
-
 void LandmarkDepth::add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) {
   std::vector<double> logs;
   for (const SeenDepth& seen : landmarks) {
     if (region_.contains(seen.point) && seen.depth_m > 0.0) logs.push_back(std::log(seen.depth_m));
   }
-  if (static_cast<int>(logs.size()) < config_.min_landmarks) return;
+  if (static_cast<int>(logs.size()) < kSceneDepthTuning.min_landmarks) return;
   const double middle = median(logs), spread = robust_deviation(logs, middle);
   // The standard error of the median of n values is 1.25 spread / sqrt(n); a twentieth is added for common errors.
   const double sigma = std::hypot(0.05, 1.25 * spread / std::sqrt(static_cast<double>(logs.size())));

@@ -23,14 +23,13 @@ struct CentralRegion {
 class LandmarkDepth : public DepthPrior {
  public:
   /// region_share: of each side of the image, around its middle.
-  LandmarkDepth(const CameraModel& camera, double region_share, const LandmarkDepthConfig& config,
-                const DepthFilterConfig& filter);
+  LandmarkDepth(const CameraModel& camera, double region_share, const DepthFilterConfig& filter)
+      : region_(camera, region_share), filter_(filter) {}
 
   void add_landmarks(Timestamp t, std::span<const SeenDepth> landmarks) override;
   std::optional<DepthEstimate> at(Timestamp t) const override { return filter_.at(t); }
 
  private:
-  LandmarkDepthConfig config_;
   CentralRegion region_;
   DepthFilter filter_;
 };

@@ -4,13 +4,14 @@
 
 #include "edged/core/check.hpp"
 #include "edged/depth/fused_depth.hpp"
+#include "edged/depth/tuning.hpp"
 
 namespace edged {
 
 std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera,
                                              Inference inference) {
-  const ConstantDepth constant(config.constant_m, config.constant_sigma_ln);
-  const LandmarkDepth landmarks(camera, config.region_share, config.landmarks, config.filter);
+  const ConstantDepth constant(config.constant_m, kSceneDepthTuning.constant_sigma_ln);
+  const LandmarkDepth landmarks(camera, config.region_share, config.filter);
   const auto network = [&] {
     return std::make_unique<NetworkDepth>(camera, config.region_share, config.network, config.filter, inference);
   };
@@ -22,7 +23,7 @@ std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const Ca
     case DepthSource::Network:
       return network();
     case DepthSource::Fused:
-      return std::make_unique<FusedDepth>(constant, landmarks, network(), config.scale);
+      return std::make_unique<FusedDepth>(constant, landmarks, network());
   }
   EDGED_CHECK(false, "depth source {}", static_cast<int>(config.source));
 }

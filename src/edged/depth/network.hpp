@@ -19,13 +19,13 @@ struct DepthModel {
   int multiple = 8;       ///< sides of its input are multiples of this
   double d_max_m = 80.0;  ///< depth = d_max exp(-alpha (1 - output))
   double alpha = 3.70378;
-  double focal_px = 0.0;   ///< of the camera it was trained with; 0: not known, depths are not scaled
-  double window_s = 0.05;  ///< of events it was trained with
+  double focal_px = 0.0;   ///< that of the camera in training; 0: not known, depths are not scaled
+  double window_s = 0.05;  ///< length of the windows in training
   double sigma_ln = 0.7;   ///< rms error of ln depth to expect
   struct State {
     std::string name;  ///< input NAME_in, output NAME_out
     int channels = 0;
-    int divisor = 1;  ///< of the input's sides
+    int divisor = 1;  ///< divides the input's sides
   };
   std::vector<State> states;  ///< empty: not recurrent
 };

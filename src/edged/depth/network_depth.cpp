@@ -8,12 +8,11 @@
 
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
+#include "edged/depth/tuning.hpp"
 #include "edged/events/voxel_grid.hpp"
 
 namespace edged {
 namespace {
-
-constexpr Duration kForgetAfter = std::chrono::seconds(5);  // a recurrent network is reset
 
 DepthFilterConfig with_time_constant(DepthFilterConfig filter, double time_constant_s) {
   filter.time_constant_s = time_constant_s;
@@ -81,11 +80,11 @@ void NetworkDepth::take(const DepthEstimate& measured) {
 }
 
 std::optional<DepthEstimate> NetworkDepth::measure(const std::vector<Event>& window) {
-  if (seen_until_ && window.front().t - *seen_until_ > kForgetAfter) network_.reset();
+  if (seen_until_ && window.front().t - *seen_until_ > kSceneDepthTuning.memory) network_.reset();
   seen_until_ = window.back().t;
   const auto is_seen = [this](const Event& event) { return seen_.contains(cv::Point(event.x, event.y)); };
   if (static_cast<double>(std::count_if(window.begin(), window.end(), is_seen)) <
-      config_.min_events_per_pixel * seen_.area())
+      kSceneDepthTuning.min_events_per_pixel * seen_.area())
     return std::nullopt;
   cv::Mat grid = voxel_grid(window, seen_, network_.model().bins);
   normalise_voxels(grid);

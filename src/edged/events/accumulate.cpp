@@ -75,8 +75,6 @@ void EventFrameConfig::visit(ConfigFields& fields) {
       {"events", 0.1, 1000, "This many events on one pixel are white. Fewer give more contrast and more noise."});
   fields.choice("depth", depth, {{"scene", EventDepth::Scene}, {"landmarks", EventDepth::Landmarks}},
                 {.effect = "Depth for the motion compensation: one for the scene, or that of the nearest landmark."});
-  fields.add("depth_cell_px", depth_grid.cell_px,
-             {"px", 1, 64, "Side length of a cell of equal depth (depth = landmarks)."});
   fields.add("blur_sigma_px", blur_sigma_px,
              {"px", 0, 10, "Gaussian blur of the event frame, which gives the tracker smoother gradients. 0: off."});
 }

@@ -44,7 +44,7 @@ class EventFrameRenderer {
 
   UndistortTable table_;
   EventFrameConfig config_;
-  double spread_;  ///< of one event: the sum of the squares of its weights after the blur, mean over all subpixels
+  double spread_;  ///< sum of the squares of the weights of one event after the blur, mean over all subpixels
   cv::Mat positive_, negative_;  ///< CV_32FC1, one pixel of border for the weights of events just outside
   cv::Mat sum_, difference_, blurred_;
 };

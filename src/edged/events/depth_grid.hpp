@@ -8,9 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "edged/options/events.hpp"
+#include "edged/events/tuning.hpp"
 
 namespace edged {
+
+struct DepthGridSettings {
+  int cell_px = kEventsTuning.cell_px;
+  double reach_px = kEventsTuning.depth_reach_px;
+};
 
 struct DepthSample {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< undistorted

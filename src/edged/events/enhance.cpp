@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/events/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -23,13 +24,14 @@ cv::Mat gaussian(const cv::Mat& image, double sigma_px) {
 
 cv::Mat equalise(const cv::Mat& image, const EnhanceConfig& config) {
   cv::Mat equalised;
-  cv::createCLAHE(config.clahe_clip, cv::Size(config.clahe_tiles, config.clahe_tiles))->apply(image, equalised);
+  cv::createCLAHE(config.clahe_clip, cv::Size(kEventsTuning.clahe_tiles, kEventsTuning.clahe_tiles))
+      ->apply(image, equalised);
   return equalised;
 }
 
 cv::Mat sharpen(const cv::Mat& clahe, const cv::Mat& blurred, const EnhanceConfig& config) {
   const bool paper = config.sharpening == Sharpening::Paper;
-  const cv::Mat minus = paper ? blurred : gaussian(clahe, config.unsharp_sigma_px);
+  const cv::Mat minus = paper ? blurred : gaussian(clahe, kEventsTuning.unsharp_sigma_px);
   cv::Mat sharpened;
   cv::addWeighted(clahe, 1.0 + config.sharpen_lambda, minus, -config.sharpen_lambda, 0.0, sharpened);
   return sharpened;

@@ -17,7 +17,7 @@ namespace edged {
 /// A row of the table of edge filters.
 struct EdgeFilter {
   EdgeMethod method;
-  std::string_view name;                                               ///< of the option's choice
+  std::string_view name;                                               ///< the option's choice
   cv::Mat (*find)(const cv::Mat& image, const EnhanceConfig& config);  ///< I_edge; null: no enhancement
 };
 std::span<const EdgeFilter> edge_filters();

@@ -6,23 +6,13 @@
 #include <numbers>
 
 #include "edged/core/statistics.hpp"
+#include "edged/events/tuning.hpp"
 
 namespace edged {
 namespace {
 
 constexpr std::size_t kBins = PolaritySpectrum::kBins;
 const double kWindow_s = to_seconds(PolaritySpectrum::kWindow);
-constexpr double kLeastHz = 60.0, kMostHz = 900.0;
-constexpr double kFewestEvents = 500.0;
-// Of a component: its swing, its power over that of as many random events, and over the median of all. Recordings
-// without lamps reach 0.22, 53 and 57 at once (a hand), 0.05, 127 and 95 (stripes); a lamp has 0.46, 4000 and 4000.
-constexpr double kLeastSwing = 0.08, kLeastOverNoise = 100.0, kLeastOverMedian = 100.0;
-constexpr int kPatience = 2;  // windows
-// Of a cycle. An event returns from the half cycle before it.
-constexpr double kReach = 0.9;
-// Events that are needed for one to stay, beyond those that return: one for each so many in the reach. Thresholds for
-// rise and fall differ, and so do the events of both directions.
-constexpr int kEventsPerDoubt = 4;
 
 /// cos and sin of 2 pi i / kBins.
 const std::array<std::complex<double>, kBins>& circle() {
@@ -81,10 +71,10 @@ std::complex<double> PolaritySpectrum::component(const Signal& signal, std::size
 
 std::optional<LampCycle> PolaritySpectrum::lamp(Timestamp begin) const {
   const double all = weight();
-  if (all < kFewestEvents) return std::nullopt;
+  if (all < kEventsTuning.lamp_min_events) return std::nullopt;
   const Signal signal = balanced();
-  const auto first = static_cast<std::size_t>(kLeastHz * kWindow_s),
-             last = static_cast<std::size_t>(kMostHz * kWindow_s);
+  const auto first = static_cast<std::size_t>(kEventsTuning.lamp_min_hz * kWindow_s),
+             last = static_cast<std::size_t>(kEventsTuning.lamp_max_hz * kWindow_s);
   std::vector<double> size;  // of the components from first to last
   for (std::size_t k = first; k <= last; ++k) size.push_back(std::abs(component(signal, k)));
   const auto peak = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
@@ -92,7 +82,8 @@ std::optional<LampCycle> PolaritySpectrum::lamp(Timestamp begin) const {
   double noise = 0.0;
   for (std::size_t i = 0; i < kBins; ++i) noise += hann(i) * hann(i) * (positive_[i] + negative_[i]);
   const double power = size[peak] * size[peak];
-  if (size[peak] < kLeastSwing * all || power < kLeastOverNoise * noise || power < kLeastOverMedian * usual * usual)
+  if (size[peak] < kEventsTuning.lamp_min_swing * all || power < kEventsTuning.lamp_min_power_ratio * noise ||
+      power < kEventsTuning.lamp_min_power_ratio * usual * usual)
     return std::nullopt;
   // A sine between two components has both of them; by the Hann window their ratio gives its place.
   const double left = peak > 0 ? size[peak - 1] : 0.0, right = peak + 1 < size.size() ? size[peak + 1] : 0.0;
@@ -117,14 +108,14 @@ void FlickerDetector::end_window(Timestamp t) {
     if (cycles > 0.0) found_->hz = cycles / between_s;
     lamp_ = found_;
   }
-  if (missed_ >= kPatience) lamp_.reset();
+  if (missed_ >= kEventsTuning.lamp_missed_windows) lamp_.reset();
   spectrum_.clear();
   window_begin_ = follows ? window_begin_ + PolaritySpectrum::kWindow : t;
 }
 
 void FlickerFilter::prepare() {
   if (!detector_.lamp()) return recent_.clear();
-  reach_us_ = static_cast<std::uint32_t>(1e6 * kReach / detector_.lamp()->hz);
+  reach_us_ = static_cast<std::uint32_t>(1e6 * kEventsTuning.lamp_reach / detector_.lamp()->hz);
 }
 
 bool FlickerFilter::returns(const Event& event) {
@@ -146,7 +137,7 @@ bool FlickerFilter::returns(const Event& event) {
   }
   std::copy_backward(recent.begin(), recent.end() - 1, recent.end());
   recent.front() = now;
-  return kEventsPerDoubt * least <= events;
+  return kEventsTuning.lamp_events_per_surplus * least <= events;
 }
 
 }  // namespace edged

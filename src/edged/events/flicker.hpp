@@ -43,7 +43,8 @@ class PolaritySpectrum {
 
   /// Events, weighted by a Hann window.
   double weight() const;
-  /// Of `cycles` in the window: positive minus negative events at the crest minus at the trough, over all events.
+  /// The swing of `cycles` in the window: positive minus negative events at the crest minus at the trough, over all
+  /// events.
   double swing(std::size_t cycles) const { return std::abs(component(balanced(), cycles)) / weight(); }
   /// The light; nothing unless polarities swing together. begin: of the window.
   std::optional<LampCycle> lamp(Timestamp begin) const;
@@ -74,7 +75,7 @@ class FlickerDetector {
     spectrum_.add(window_begin_, events);
     return true;
   }
-  /// Of the light, by the windows that have ended; nothing without flicker.
+  /// The lamp, by the windows that have ended; nothing without flicker.
   const std::optional<LampCycle>& lamp() const { return lamp_; }
   /// By those that had ended at t, which is within the present window or the one before.
   const std::optional<LampCycle>& lamp_at(Timestamp t) const { return t < window_begin_ ? before_ : lamp_; }
@@ -92,7 +93,7 @@ class FlickerDetector {
 };
 
 /// Drops the events by which the light of a pixel only returns to what it was within the last cycle of the lamp, while
-/// there is flicker. Memory: then 64 bytes for each pixel.
+/// it flickers. Memory: 64 bytes for each pixel while it does.
 class FlickerFilter {
  public:
   FlickerFilter(int width, int height)
@@ -103,7 +104,7 @@ class FlickerFilter {
     if (detector_.add(event.t, event.positive)) prepare();
     return detector_.lamp() && returns(event);
   }
-  /// Of events in order. False, without effect, if they are to be asked for one by one.
+  /// Whether it drops none of these events, in order. False, without effect, if they are to be asked for one by one.
   bool drops_none(std::span<const Event> events) { return !detector_.lamp() && detector_.add(events); }
   const FlickerDetector& detector() const { return detector_; }
 

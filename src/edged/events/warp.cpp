@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/events/tuning.hpp"
 
 namespace edged {
 namespace {
 
-constexpr Duration kMaxBin = std::chrono::microseconds(500);
 constexpr int kMaxBins = 4096;  // a very long packet gets longer bins instead of more memory
 
 /// The pose along a motion, with the logarithm of each segment taken once.
@@ -75,7 +75,7 @@ std::vector<Timestamp> bin_edges(const MotionCurve& curve, Timestamp first, Time
   }
   corners.push_back(last);
 
-  const Duration step = std::max(kMaxBin, (last - first) / kMaxBins);
+  const Duration step = std::max(kEventsTuning.warp_step, (last - first) / kMaxBins);
   std::vector<Timestamp> edges{first};
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     const Duration length = corners[i + 1] - corners[i];
@@ -97,13 +97,13 @@ SE3 CameraMotion::at(Timestamp t, WarpInterpolation interpolation) const {
   return MotionCurve(*this, interpolation).at(t);
 }
 
-CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C,
+CameraMotion camera_motion(std::span<const StampedPose> T_O_B, const SE3& T_O_Bref, const SE3& T_B_C,
                            Duration time_offset) {
-  const SE3 T_Cref_W = (T_W_Bref * T_B_C).inverse();
+  const SE3 T_Cref_O = (T_O_Bref * T_B_C).inverse();
   CameraMotion motion;
-  motion.knots.reserve(T_W_B.size());
-  for (const StampedPose& pose : T_W_B) {
-    motion.knots.push_back({pose.t - time_offset, T_Cref_W * pose.T * T_B_C});
+  motion.knots.reserve(T_O_B.size());
+  for (const StampedPose& pose : T_O_B) {
+    motion.knots.push_back({pose.t - time_offset, T_Cref_O * pose.T * T_B_C});
   }
   return motion;
 }

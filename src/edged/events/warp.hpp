@@ -33,9 +33,9 @@ struct CameraMotion {
   SE3 at(Timestamp t, WarpInterpolation interpolation) const;
 };
 
-/// The motion of a camera from body poses T_W_B: T_ref_t = T_C_B * T_W_B(ref)^-1 * T_W_B(t) * T_B_C, with the
+/// The motion of a camera from body poses T_O_B: T_ref_t = T_C_B * T_O_B(ref)^-1 * T_O_B(t) * T_B_C, with the
 /// poses' stamps on the clock of its events: t_pose = t_event + time_offset.
-CameraMotion camera_motion(std::span<const StampedPose> T_W_B, const SE3& T_W_Bref, const SE3& T_B_C,
+CameraMotion camera_motion(std::span<const StampedPose> T_O_B, const SE3& T_O_Bref, const SE3& T_B_C,
                            Duration time_offset = Duration(0));
 
 struct WarpSettings {
@@ -62,7 +62,7 @@ class EventWarp {
         events, table, [](const Eigen::Vector2f&) { return 0.0F; }, sink);
   }
 
-  /// The same with the depth that the grid holds where the event is; the grid belongs to the reference time, and
+  /// As above, with the depth that the grid holds where the event is; the grid belongs to the reference time, and
   /// motion within its cells is neglected.
   template <typename Sink>
   void for_each(std::span<const Event> events, const UndistortTable& table, const DepthGrid& depths,
@@ -96,39 +96,51 @@ class EventWarp {
   };
   static void warp(const Bin& bin, Block& block);
 
-  /// nearer(undistorted pixel): its inverse depth less the one that H holds.
-  template <typename Nearer, typename Sink>
-  void visit(std::span<const Event> events, const UndistortTable& table, Nearer&& nearer, Sink&& sink) const {
+  /// Fills the block with the next events of a bin, and returns the events after these. nearer(undistorted pixel): its
+  /// inverse depth less the one that H holds.
+  template <typename Nearer>
+  static std::span<const Event> fill(Block& block, const Bin& bin, std::span<const Event> events,
+                                     const UndistortTable& table, const Nearer& nearer) {
     const auto width = static_cast<unsigned>(table.width());
     const auto height = static_cast<unsigned>(table.height());
     // Table and image of a large sensor do not fit into the L2 cache.
     const auto prefetch = [&](const Event& event) {
       if (event.x < width && event.y < height) __builtin_prefetch(&table.at(event.x, event.y));
     };
-    Block block;
     std::size_t i = 0;
+    for (block.count = 0; block.count < Block::kMost && i < events.size() && events[i].t < bin.end; ++i) {
+      const Event& event = events[i];
+      if (i + kAhead < events.size()) prefetch(events[i + kAhead]);
+      if (event.x >= width || event.y >= height) continue;
+      const Eigen::Vector2f& p = table.at(event.x, event.y);
+      if (std::isnan(p.x())) continue;
+      block.x[block.count] = p.x();
+      block.y[block.count] = p.y();
+      block.positive[block.count] = event.positive;
+      block.a[block.count] = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
+      block.nearer[block.count++] = nearer(p);
+    }
+    return events.subspan(i);
+  }
+
+  template <typename Sink>
+  static void pass_to(Sink& sink, const Block& block) {
+    if constexpr (requires { sink.prefetch(0.0F, 0.0F, true); }) {
+      for (std::size_t k = 0; k < block.count; ++k) sink.prefetch(block.x[k], block.y[k], block.positive[k]);
+    }
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (!(block.w[k] < kMinDepthRatio)) sink(block.x[k], block.y[k], block.positive[k]);
+    }
+  }
+
+  template <typename Nearer, typename Sink>
+  void visit(std::span<const Event> events, const UndistortTable& table, Nearer&& nearer, Sink&& sink) const {
+    Block block;
     for (const Bin& bin : bins_) {
-      const auto more = [&] { return i < events.size() && events[i].t < bin.end; };
-      while (more()) {
-        for (block.count = 0; block.count < Block::kMost && more(); ++i) {
-          const Event& event = events[i];
-          if (i + kAhead < events.size()) prefetch(events[i + kAhead]);
-          if (event.x >= width || event.y >= height) continue;
-          const Eigen::Vector2f& p = table.at(event.x, event.y);
-          if (std::isnan(p.x())) continue;
-          block.x[block.count] = p.x();
-          block.y[block.count] = p.y();
-          block.positive[block.count] = event.positive;
-          block.a[block.count] = static_cast<float>((event.t - bin.begin).count()) * bin.per_ns;
-          block.nearer[block.count++] = nearer(p);
-        }
+      while (!events.empty() && events.front().t < bin.end) {
+        events = fill(block, bin, events, table, nearer);
         warp(bin, block);
-        if constexpr (requires { sink.prefetch(0.0F, 0.0F, true); }) {
-          for (std::size_t k = 0; k < block.count; ++k) sink.prefetch(block.x[k], block.y[k], block.positive[k]);
-        }
-        for (std::size_t k = 0; k < block.count; ++k) {
-          if (!(block.w[k] < kMinDepthRatio)) sink(block.x[k], block.y[k], block.positive[k]);
-        }
+        pass_to(sink, block);
       }
     }
   }

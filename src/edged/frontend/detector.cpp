@@ -11,15 +11,13 @@
 #include <tuple>
 
 #include "edged/core/check.hpp"
+#include "edged/frontend/tuning.hpp"
 
 namespace edged {
 namespace {
 
-constexpr double kReferenceWidth_px = 240.0;
-constexpr std::size_t kCandidatesPerCell =
-    4;  // further candidates for a cell whose best corner is too close to one of a neighbouring cell
-constexpr int kSameCorner_px = 4;
-constexpr int kHarrisHalf = 3;  // 7x7 block, as ORB
+constexpr double kLevelFactor = 1.2;  // between scales, as ORB
+constexpr int kHarrisHalf = 3;        // 7x7 block, as ORB
 constexpr double kHarrisK = 0.04;
 constexpr int kFastRadius = 3;
 constexpr int kShiTomasiBlock = 5;
@@ -147,10 +145,10 @@ std::vector<Candidate> strongest_apart(std::vector<Candidate> found) {
   std::vector<Candidate> kept;
   for (const Candidate& c : found) {
     const auto same_corner = [&](const Candidate& k) {
-      return std::max(std::abs(c.x - k.x), std::abs(c.y - k.y)) < kSameCorner_px;
+      return std::max(std::abs(c.x - k.x), std::abs(c.y - k.y)) < kFrontendTuning.same_corner_px;
     };
     if (std::none_of(kept.begin(), kept.end(), same_corner)) kept.push_back(c);
-    if (kept.size() == kCandidatesPerCell) break;
+    if (kept.size() == kFrontendTuning.candidates_per_cell) break;
   }
   return kept;
 }
@@ -164,7 +162,7 @@ struct Scale {
 std::vector<Scale> scales_of(const cv::Mat& image, int levels) {
   std::vector<Scale> scales{{image, 1.0}};
   for (int level = 1; level < levels; ++level) {
-    const double factor = scales.back().factor * DetectorConfig::kLevelFactor;
+    const double factor = scales.back().factor * kLevelFactor;
     cv::Mat smaller;
     const cv::Size size(cvRound(image.cols / factor), cvRound(image.rows / factor));
     if (size.empty()) break;
@@ -230,32 +228,18 @@ void DetectorConfig::visit(ConfigFields& fields) {
       "corners", corners,
       {{"fast_harris", CornerKind::FastHarris}, {"fast", CornerKind::Fast}, {"shi_tomasi", CornerKind::ShiTomasi}},
       {.effect = "Corner detector: FAST ranked by Harris score (as in ORB), FAST by its own score, or Shi-Tomasi."});
-  fields.add(
-      "max_features", max_features,
-      {.unit = "1", .min = 8, .max = 2000, .effect = "Largest number of live tracks per camera, one per grid cell."});
+  fields.add("max_features", max_features,
+             {"1", 8, 2000, "Largest number of live tracks per camera, one per grid cell."});
   fields.add("cell_px", cell_px,
-             {.unit = "px",
-              .min = 6,
-              .max = 120,
-              .effect = "Side length of a grid cell in an image 240 px wide. It scales with the width."});
-  fields.add("levels", levels,
-             {.unit = "1",
-              .min = 1,
-              .max = 8,
-              .effect = "Number of scales for detection, each 1.2 times coarser (as in ORB)."});
+             {"px", 6, 120, "Side length of a grid cell in an image 240 px wide. It scales with the width."});
+  fields.add("levels", levels, {"1", 1, 8, "Number of scales for detection, each 1.2 times coarser (as in ORB)."});
   fields.add(
       "separation_px", separation_px,
-      {.unit = "px",
-       .min = 0,
-       .max = 60,
-       .effect = "Least distance of a new feature from a track in an image 240 px wide. It scales with the width."});
+      {"px", 0, 60, "Least distance of a new feature from a track in an image 240 px wide. It scales with the width."});
   fields.add("fast_threshold", fast_threshold,
-             {.unit = "grey", .min = 2, .max = 200, .effect = "Contrast threshold of FAST, used first in every cell."});
+             {"grey", 2, 200, "Contrast threshold of FAST, used first in every cell."});
   fields.add("fast_threshold_low", fast_threshold_low,
-             {.unit = "grey",
-              .min = 1,
-              .max = 200,
-              .effect = "Contrast threshold of FAST in cells without a corner at the first threshold."});
+             {"grey", 1, 200, "Contrast threshold of FAST in cells without a corner at the first threshold."});
 }
 
 std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied, int limit,
@@ -265,7 +249,7 @@ std::vector<Corner> detect_corners(const cv::Mat& image, std::span<const Eigen::
   const cv::Rect inner(border, border, image.cols - 2 * border, image.rows - 2 * border);
   if (limit <= 0 || inner.width <= 0 || inner.height <= 0) return {};
 
-  const double scale = image.cols / kReferenceWidth_px;
+  const double scale = image.cols / kFrontendTuning.reference_width_px;
   Grid grid(image.size(), config.cell_px * scale);
   cv::Mat near_track = unused.empty() ? cv::Mat(cv::Mat::zeros(image.size(), CV_8UC1)) : unused.clone();
   const auto occupy = [&](const cv::Point& p) {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// When an instant becomes a keyframe: a pure function of the changes since the last one.
+// When an instant becomes a keyframe, by the changes since the last one.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "edged/options/frontend.hpp"
@@ -14,7 +13,7 @@ namespace edged {
 /// The tracks of one camera since the last keyframe.
 struct KeyframeTracks {
   int at_keyframe = 0;               ///< number of tracks at the keyframe
-  std::vector<double> parallax_rad;  ///< of each live track, after rotation compensation
+  std::vector<double> parallax_rad;  ///< one per live track, after rotation compensation
 
   int alive() const { return static_cast<int>(parallax_rad.size()); }
 };
@@ -26,12 +25,7 @@ struct SinceKeyframe {
   KeyframeTracks tracks;
 };
 
-enum class KeyframeReason { None, First, FewTracks, Parallax, Rotation, Time };
-
-/// Why the present instant should become a keyframe, or None. The first rule that holds is named, in the order of the
-/// enumeration; before min_interval_s only First can hold.
-KeyframeReason keyframe_reason(const SinceKeyframe& since, const KeyframeConfig& config);
-
-std::string to_string(KeyframeReason reason);
+/// Whether the present instant should become a keyframe.
+bool keyframe_due(const SinceKeyframe& since, const KeyframeConfig& config);
 
 }  // namespace edged

@@ -20,27 +20,19 @@ SinceKeyframe since(int alive, double parallax_deg, double rotation_deg, double 
   return s;
 }
 
-TEST(KeyframePolicy, TakesTheFirstInstant) { EXPECT_EQ(keyframe_reason({}, {}), KeyframeReason::First); }
-
-TEST(KeyframePolicy, NamesTheRuleThatHolds) {
-  const KeyframeConfig config;
-  EXPECT_EQ(keyframe_reason(since(80, 0.5, 3, 0.2), config), KeyframeReason::None);
-  EXPECT_EQ(keyframe_reason(since(59, 0.5, 3, 0.2), config), KeyframeReason::FewTracks);
-  EXPECT_EQ(keyframe_reason(since(80, 1.6, 3, 0.2), config), KeyframeReason::Parallax);
-  EXPECT_EQ(keyframe_reason(since(80, 0.0, 11, 0.2), config), KeyframeReason::Rotation);
-  EXPECT_EQ(keyframe_reason(since(80, 0.5, 3, 0.6), config), KeyframeReason::Time);
+TEST(KeyframePolicy, MakesAKeyframeOfTheFirstInstantAndByEachRule) {
+  EXPECT_TRUE(keyframe_due({}, {}));
+  EXPECT_FALSE(keyframe_due(since(80, 0.5, 3, 0.2), {}));
+  EXPECT_TRUE(keyframe_due(since(59, 0.5, 3, 0.2), {})) << "few tracks";
+  EXPECT_TRUE(keyframe_due(since(80, 1.6, 3, 0.2), {})) << "parallax";
+  EXPECT_TRUE(keyframe_due(since(80, 0.0, 11, 0.2), {})) << "rotation";
+  EXPECT_TRUE(keyframe_due(since(80, 0.5, 3, 0.6), {})) << "time";
+  EXPECT_TRUE(keyframe_due(since(0, 0, 0, 0.1), {})) << "no track is left";
 }
 
-TEST(KeyframePolicy, KeepsKeyframesApartInTime) {
-  EXPECT_EQ(keyframe_reason(since(0, 9.0, 90, 0.04), {}), KeyframeReason::None);
-}
-
-TEST(KeyframePolicy, MakesNoKeyframesAtStandstill) {
-  EXPECT_EQ(keyframe_reason(since(100, 0.05, 0.1, 60.0), {}), KeyframeReason::None);
-}
-
-TEST(KeyframePolicy, AsksForAKeyframeWhenNoTrackIsLeft) {
-  EXPECT_EQ(keyframe_reason(since(0, 0, 0, 0.1), {}), KeyframeReason::FewTracks);
+TEST(KeyframePolicy, KeepsKeyframesApartInTimeAndMakesNoneAtStandstill) {
+  EXPECT_FALSE(keyframe_due(since(0, 9.0, 90, 0.04), {}));
+  EXPECT_FALSE(keyframe_due(since(100, 0.05, 0.1, 60.0), {}));
 }
 
 }  // namespace

@@ -8,21 +8,19 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "edged/core/check.hpp"
+#include "edged/frontend/tuning.hpp"
 
 namespace edged {
 namespace {
 
-constexpr int kPatchSide = 11;
 // OpenCV's eigenvalue is that of the mean squared gradient [grey/px]^2 over 1024 (Scharr gain 32, scale 2^-20).
 constexpr double kEigenvalueScale = 1.0 / 1024.0;
 
 }  // namespace
 
 void KltConfig::visit(ConfigFields& fields) {
-  fields.add("window_px", window_px,
-             {.unit = "px", .min = 5, .max = 61, .effect = "Side length of the matched window, odd."});
-  fields.add("levels", levels,
-             {.unit = "1", .min = 1, .max = 6, .effect = "Number of pyramid levels, full size included."});
+  fields.add("window_px", window_px, {"px", 5, 61, "Side length of the matched window, odd."});
+  fields.add("levels", levels, {"1", 1, 6, "Number of pyramid levels, full size included."});
 }
 
 void ImagePyramid::build(const cv::Mat& image, const KltConfig& config) {
@@ -36,7 +34,8 @@ Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<
   EDGED_CHECK(points.size() == seeds.size(), "{} points, {} seeds", points.size(), seeds.size());
   Flow flow{seeds, {}};
   if (points.empty()) return flow;
-  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, config.iterations, epsilon_px);
+  const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kFrontendTuning.flow_iterations,
+                              epsilon_px);
   const double min_eigenvalue = config.min_gradient * config.min_gradient * kEigenvalueScale;
   cv::calcOpticalFlowPyrLK(from.levels(), to.levels(), points, flow.points, flow.found, cv::noArray(),
                            cv::Size(config.window_px, config.window_px), top_level, stop, cv::OPTFLOW_USE_INITIAL_FLOW,
@@ -45,11 +44,11 @@ Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<
 }
 
 double patch_correlation(const cv::Mat& image_a, const cv::Point2f& a, const cv::Mat& image_b, const cv::Point2f& b) {
-  const cv::Size size(kPatchSide, kPatchSide);
+  const cv::Size size(kFrontendTuning.appearance_px, kFrontendTuning.appearance_px);
   cv::Mat patch_a, patch_b;
   cv::getRectSubPix(image_a, size, a, patch_a, CV_32F);
   cv::getRectSubPix(image_b, size, b, patch_b, CV_32F);
-  const int n = kPatchSide * kPatchSide;
+  const int n = kFrontendTuning.appearance_px * kFrontendTuning.appearance_px;
   const float* pa = patch_a.ptr<float>();
   const float* pb = patch_b.ptr<float>();
   double sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;

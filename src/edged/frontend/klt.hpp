@@ -7,6 +7,7 @@
 #include <opencv2/core/types.hpp>
 #include <vector>
 
+#include "edged/frontend/tuning.hpp"
 #include "edged/options/frontend.hpp"
 
 namespace edged {
@@ -35,7 +36,7 @@ struct Flow {
 /// Bouguet, "Pyramidal implementation of the Lucas Kanade feature tracker" (2000).
 Flow follow(const ImagePyramid& from, const ImagePyramid& to, const std::vector<cv::Point2f>& points,
             const std::vector<cv::Point2f>& seeds, int top_level, const KltConfig& config,
-            double epsilon_px = KltConfig::epsilon_px);
+            double epsilon_px = kFrontendTuning.flow_step_px);
 
 /// Normalised cross-correlation in [-1, 1] of the 11x11 patches around a in image_a and b in image_b: independent of
 /// gain and offset. 0 when one of them is flat.

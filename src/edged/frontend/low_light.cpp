@@ -7,13 +7,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "edged/frontend/tuning.hpp"
+
 namespace edged {
 namespace {
-
-constexpr double kDarkEnd = 0.02, kBrightEnd = 0.98;  // quantiles
-constexpr double kHoldGain = 1.3;                     // the gain is updated when it is off by this factor
-constexpr double kHoldBlack = 0.15;                   // the black level by this share of the target range
-constexpr double kFloor = 16.0;                       // grey level of the dark end: noise below it is not clipped
 
 struct Range {
   double dark = 0.0, bright = 0.0;
@@ -31,7 +28,7 @@ Range grey_range(const cv::Mat& image) {
     while (level < 255 && left > static_cast<double>(histogram[level])) left -= static_cast<double>(histogram[level++]);
     return static_cast<double>(level);
   };
-  return {quantile(kDarkEnd), quantile(kBrightEnd)};
+  return {quantile(kFrontendTuning.dark_share), quantile(1.0 - kFrontendTuning.dark_share)};
 }
 
 }  // namespace
@@ -49,15 +46,16 @@ cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {
     gain_ = 1.0;
     return image;
   }
-  const double wanted = std::clamp(config_.target_range / width, 1.0, config_.max_gain);
-  const bool other_light = std::max(wanted / gain_, gain_ / wanted) > kHoldGain;
-  if (other_light || gain_ * std::abs(range.dark - black_) > kHoldBlack * config_.target_range) {
+  const double wanted = std::clamp(kFrontendTuning.target_range / width, 1.0, kFrontendTuning.max_gain);
+  const bool other_light = std::max(wanted / gain_, gain_ / wanted) > kFrontendTuning.hold_gain;
+  if (other_light ||
+      gain_ * std::abs(range.dark - black_) > kFrontendTuning.hold_black_share * kFrontendTuning.target_range) {
     gain_ = wanted;
     black_ = range.dark;
   }
   cv::Mat smooth, stretched;
-  image.convertTo(smooth, CV_32F, gain_, kFloor - gain_ * black_);
-  cv::GaussianBlur(smooth, smooth, cv::Size(), config_.smoothing_px);
+  image.convertTo(smooth, CV_32F, gain_, kFrontendTuning.floor - gain_ * black_);
+  cv::GaussianBlur(smooth, smooth, cv::Size(), kFrontendTuning.smoothing_px);
   smooth.convertTo(stretched, CV_8U);
   return stretched;
 }

@@ -15,18 +15,13 @@
 #include "edged/camera/two_view.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
+#include "edged/frontend/tuning.hpp"
 
 namespace edged {
 namespace {
 
 using Adapter = opengv::relative_pose::CentralRelativeAdapter;
 namespace sac_problems = opengv::sac_problems::relative_pose;
-
-constexpr double kConfidence = 0.999;
-constexpr std::size_t kMinPairsTranslation = 6;
-constexpr std::size_t kMinPairsFivePoint = 12;
-// A rotation with this share of the inliers of a full motion is preferred, as the simpler model.
-constexpr double kRotationPreference = 0.9;
 
 struct Rays {
   opengv::bearingVectors_t reference, current;
@@ -58,9 +53,8 @@ std::vector<char> below(const std::vector<double>& values, double limit) {
 int count(const std::vector<char>& mask) { return static_cast<int>(std::count(mask.begin(), mask.end(), 1)); }
 
 template <typename Problem>
-std::optional<typename Problem::model_t> ransac(const std::shared_ptr<Problem>& problem, double threshold,
-                                                int iterations) {
-  opengv::sac::Ransac<Problem> search(iterations, threshold, kConfidence);
+std::optional<typename Problem::model_t> ransac(const std::shared_ptr<Problem>& problem, double threshold) {
+  opengv::sac::Ransac<Problem> search(kFrontendTuning.ransac_iterations, threshold, kFrontendTuning.ransac_confidence);
   search.sac_model_ = problem;
   if (!search.computeModel()) return std::nullopt;
   return search.model_coefficients_;
@@ -85,80 +79,73 @@ std::vector<char> motion_inliers(Problem& problem, const typename Problem::model
 
 OutlierResult make_result(OutlierModel model, std::vector<char> inlier) {
   const int inliers = count(inlier);
-  return {model, std::move(inlier), inliers, 0.0};
+  return {model, std::move(inlier), inliers};
 }
 
 OutlierResult keep_all(std::size_t n) { return make_result(OutlierModel::None, std::vector<char>(n, 1)); }
 
 OutlierResult known_rotation(std::span<const Correspondence> pairs, const Eigen::Matrix3d& R_ref_cur, double focal_px,
                              const OutlierConfig& config) {
-  if (pairs.size() < kMinPairsTranslation) return keep_all(pairs.size());
+  if (pairs.size() < kFrontendTuning.min_pairs_translation) return keep_all(pairs.size());
   const Rays rays = make_rays(pairs);
   Adapter adapter(rays.reference, rays.current, R_ref_cur);
   const double threshold_rad = config.threshold_px / focal_px;
   const auto problem = std::make_shared<sac_problems::TranslationOnlySacProblem>(adapter, false);
-  const auto model = ransac(problem, epipolar_score(threshold_rad), config.iterations);
+  const auto model = ransac(problem, epipolar_score(threshold_rad));
   if (!model) return keep_all(pairs.size());
   return make_result(OutlierModel::Translation, motion_inliers(*problem, *model, pairs, threshold_rad));
 }
 
 OutlierResult unknown_rotation(std::span<const Correspondence> pairs, double focal_px, const OutlierConfig& config) {
-  if (pairs.size() < kMinPairsFivePoint) return keep_all(pairs.size());
+  if (pairs.size() < 2 * kFrontendTuning.min_pairs_translation) return keep_all(pairs.size());
   const Rays rays = make_rays(pairs);
   Adapter adapter(rays.reference, rays.current);
   const double threshold_rad = config.threshold_px / focal_px;
 
   OutlierResult rotation = keep_all(pairs.size());
   const auto turn = std::make_shared<sac_problems::RotationOnlySacProblem>(adapter, false);
-  if (const auto R = ransac(turn, 1.0 - std::cos(threshold_rad), config.iterations)) {
+  if (const auto R = ransac(turn, 1.0 - std::cos(threshold_rad))) {
     rotation = make_result(OutlierModel::RotationOnly, below(rotation_residuals(pairs, *R), threshold_rad));
   }
   const auto problem = std::make_shared<sac_problems::CentralRelativePoseSacProblem>(
       adapter, sac_problems::CentralRelativePoseSacProblem::NISTER, false);
-  const auto model = ransac(problem, epipolar_score(threshold_rad), config.iterations);
+  const auto model = ransac(problem, epipolar_score(threshold_rad));
   if (!model) return rotation;
   OutlierResult motion = make_result(OutlierModel::FivePoint, motion_inliers(*problem, *model, pairs, threshold_rad));
-  const bool rotates_only =
-      rotation.model == OutlierModel::RotationOnly && rotation.inliers >= kRotationPreference * motion.inliers;
+  const bool rotates_only = rotation.model == OutlierModel::RotationOnly &&
+                            rotation.inliers >= kFrontendTuning.rotation_preference * motion.inliers;
   return rotates_only ? rotation : motion;
 }
 
 }  // namespace
 
 void OutlierConfig::visit(ConfigFields& fields) {
-  fields.add("threshold_px", threshold_px,
-             {.unit = "px", .min = 0.1, .max = 20, .effect = "Largest distance of an inlier from its epipolar line."});
+  fields.add("threshold_px", threshold_px, {"px", 0.1, 20, "Largest distance of an inlier from its epipolar line."});
   fields.add("rotation_only_px", rotation_only_px,
-             {.unit = "px", .min = 0, .max = 20, .effect = "No translation is estimated below this median parallax."});
+             {"px", 0, 20, "No translation is estimated below this median parallax."});
   fields.add("rotation_gate_px", rotation_gate_px,
-             {.unit = "px",
-              .min = 0.1,
-              .max = 100,
-              .effect = "Largest parallax of an inlier while no translation is estimated."});
+             {"px", 0.1, 100, "Largest parallax of an inlier while no translation is estimated."});
 }
 
 OutlierResult find_inliers(std::span<const Correspondence> pairs, const std::optional<Eigen::Matrix3d>& R_ref_cur,
                            double focal_px, const OutlierConfig& config) {
   EDGED_CHECK(focal_px > 0.0, "focal length {}", focal_px);
   const auto n = static_cast<double>(pairs.size());
-  double median_parallax = 0.0;
   OutlierResult result = keep_all(pairs.size());
   if (R_ref_cur) {
     const std::vector<double> parallax = rotation_residuals(pairs, *R_ref_cur);
-    median_parallax = median(parallax);
-    if (median_parallax * focal_px < config.rotation_only_px) {
+    if (median(parallax) * focal_px < config.rotation_only_px) {
       result = make_result(OutlierModel::RotationOnly, below(parallax, config.rotation_gate_px / focal_px));
     } else {
       result = known_rotation(pairs, *R_ref_cur, focal_px, config);
     }
   }
-  if (!R_ref_cur || result.inliers < config.fallback_share * n) {
+  if (!R_ref_cur || result.inliers < kFrontendTuning.fallback_share * n) {
     OutlierResult free = unknown_rotation(pairs, focal_px, config);
     const bool better = free.model != OutlierModel::None && free.inliers > result.inliers;
     if (!R_ref_cur || better) result = std::move(free);
   }
-  if (result.inliers < config.min_share * n) result = keep_all(pairs.size());
-  result.median_parallax_rad = median_parallax;
+  if (result.inliers < kFrontendTuning.min_inlier_share * n) result = keep_all(pairs.size());
   return result;
 }
 

@@ -12,7 +12,7 @@
 
 namespace edged {
 
-/// The same corner in two views, on the unit plane of the camera.
+/// A feature in two views, on the unit plane of the camera.
 struct Correspondence {
   Eigen::Vector2d reference;
   Eigen::Vector2d current;
@@ -27,9 +27,8 @@ enum class OutlierModel {
 
 struct OutlierResult {
   OutlierModel model = OutlierModel::None;
-  std::vector<char> inlier;          ///< one per pair; all 1 with OutlierModel::None
-  int inliers = 0;                   ///< how many of them are 1
-  double median_parallax_rad = 0.0;  ///< remaining angle after compensation of the given rotation; 0 without one
+  std::vector<char> inlier;  ///< one per pair; all 1 with OutlierModel::None
+  int inliers = 0;           ///< how many of them are 1
 };
 
 /// Which pairs fit one rigid motion. R_ref_cur, from the gyro, turns rays of the current camera into the reference

@@ -114,7 +114,6 @@ TEST(Outliers, StandstillKillsNoTracks) {
   const Scene scene = make_scene(SE3(), 80, 0, 0.3);
   const OutlierResult result = find_inliers(scene.pairs, Eigen::Matrix3d::Identity(), kFocal, {});
   EXPECT_EQ(result.inliers, 80);
-  EXPECT_LT(result.median_parallax_rad * kFocal, 0.3);
 }
 
 TEST(Outliers, KeepsFarPointsWhoseParallaxDrownsInNoise) {

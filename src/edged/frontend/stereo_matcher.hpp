@@ -23,24 +23,24 @@ struct StereoImage {
   const cv::Mat& pixels;
 };
 
-/// Of one pair of images; all that it refers to must outlive it.
+/// Matches one pair of images; all that it refers to must outlive it.
 class StereoMatcher {
  public:
   StereoMatcher(StereoImage from, StereoImage to, const SE3& T_to_from, const StereoConfig& config)
       : from_(from), to_(to), T_to_from_(T_to_from), config_(config) {}
 
-  /// The pixel in `to` of a corner of `from`. depth: its z-depth in `from` [m], where known. Nothing where it is not in
-  /// view, does not match, or matches in several places.
-  std::optional<Eigen::Vector2d> match(const Eigen::Vector2d& corner, std::optional<double> depth) const;
+  /// The pixel in `to` of a feature of `from`. depth: its z-depth in `from` [m], where known. Nothing where it is not
+  /// in view, does not match, or matches in several places.
+  std::optional<Eigen::Vector2d> match(const Eigen::Vector2d& feature, std::optional<double> depth) const;
 
-  /// Distance of a pixel of `to` from the epipolar line of a corner of `from`, both on the unit plane, in pixels on the
-  /// axis of `to`.
+  /// Distance of a pixel of `to` from the epipolar line of a feature of `from`, both on the unit plane, in pixels on
+  /// the axis of `to`.
   double epipolar_px(const Eigen::Vector2d& point_from, const Eigen::Vector2d& point_to) const;
 
  private:
   std::vector<PatchPlace> candidates(const PatchOutline& outline, std::optional<double> depth) const;
   std::optional<PatchPlace> search(const Patch& patch, const PatchOutline& outline, std::optional<double> depth) const;
-  bool returns(const Eigen::Vector2d& found, const PatchPlace& place, const Eigen::Vector2d& corner) const;
+  bool returns(const Eigen::Vector2d& found, const PatchPlace& place, const Eigen::Vector2d& feature) const;
 
   StereoImage from_, to_;
   SE3 T_to_from_;

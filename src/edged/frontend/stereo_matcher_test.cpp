@@ -27,13 +27,13 @@ TEST_F(StereoPair, FindsFeaturesWithAndWithoutADepthWhateverTheGain) {
     int seen = 0, found = 0;
     for (double y = 20.0; y < 165.0; y += 12.0) {
       for (double x = 20.0; x < 225.0; x += 12.0) {
-        const Eigen::Vector2d corner(x + 0.3, y + 0.2), truth = *scene_.moved(corner, SE3(), T_W_right_);
+        const Eigen::Vector2d feature(x + 0.3, y + 0.2), truth = *scene_.moved(feature, SE3(), T_W_right_);
         if (!scene_.camera().contains(truth, 8.0)) continue;
         ++seen;
-        const auto match = matcher().match(corner, depth);
+        const auto match = matcher().match(feature, depth);
         if (!match) continue;
         ++found;
-        EXPECT_LT((*match - truth).norm(), 0.2) << corner.transpose();
+        EXPECT_LT((*match - truth).norm(), 0.2) << feature.transpose();
       }
     }
     EXPECT_GT(found, 0.9 * seen) << "of " << seen << ", depth " << depth.value_or(0.0);
@@ -64,8 +64,8 @@ TEST_F(StereoPair, RefusesARepeatedPattern) {
 
 TEST_F(StereoPair, MeasuresTheDistanceFromTheEpipolarLine) {
   const CameraModel& camera = scene_.camera();
-  const Eigen::Vector2d corner(130.0, 70.0), seen = *scene_.moved(corner, SE3(), T_W_right_);
-  const Eigen::Vector2d point = camera.pixel_to_point(corner);
+  const Eigen::Vector2d feature(130.0, 70.0), seen = *scene_.moved(feature, SE3(), T_W_right_);
+  const Eigen::Vector2d point = camera.pixel_to_point(feature);
   EXPECT_NEAR(matcher().epipolar_px(point, camera.pixel_to_point(seen)), 0.0, 1e-6);
   EXPECT_NEAR(matcher().epipolar_px(point, camera.pixel_to_point(seen + Eigen::Vector2d(0.0, 3.0))), 3.0, 0.05);
   EXPECT_LT(matcher().epipolar_px(point, camera.pixel_to_point(seen + Eigen::Vector2d(3.0, 0.0))), 0.3);

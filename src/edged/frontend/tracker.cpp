@@ -10,12 +10,10 @@
 #include "edged/camera/two_view.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
+#include "edged/frontend/tuning.hpp"
 
 namespace edged {
 namespace {
-
-constexpr int kPredictedTopLevel = 1;  // of a search that begins near its expected result
-constexpr double kCoarse_px = 0.03;    // convergence of a search whose result is aligned afterwards
 
 cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
@@ -42,7 +40,7 @@ std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_
 
 }  // namespace
 
-void TemplateConfig::visit(ConfigFields& fields) {
+void ReferencePatchConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled,
              {.effect = "Align features to their reference patches, which removes the drift of optical flow."});
   patch.visit(fields);
@@ -52,20 +50,12 @@ void TrackerConfig::visit(ConfigFields& fields) {
   fields.group("detector", detector);
   fields.group("klt", klt);
   fields.group("outliers", outliers);
-  fields.group("templates", templates);
+  fields.group("templates", reference_patches);
   fields.add("forward_backward_px", forward_backward_px,
-             {.unit = "px",
-              .min = 0.01,
-              .max = 100,
-              .effect = "A track that is followed backwards must return this close to its start."});
+             {"px", 0.01, 100, "A track that is followed backwards must return this close to its start."});
   fields.add("min_correlation", min_correlation,
-             {.unit = "1",
-              .min = -1,
-              .max = 1,
-              .effect = "Least correlation of a track's patch with the one in the previous image."});
-  fields.add(
-      "sigma_px", sigma_px,
-      {.unit = "px", .min = 0.01, .max = 20, .effect = "Standard deviation of an observation in the estimator."});
+             {"1", -1, 1, "Least correlation of a track's patch with the one in the previous image."});
+  fields.add("sigma_px", sigma_px, {"px", 0.01, 20, "Standard deviation of an observation in the estimator."});
 }
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
@@ -73,7 +63,7 @@ FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camer
       camera_(camera),
       config_(config),
       unused_(unused_pixels(camera, config.detector.border_px)),
-      templates_(camera, config.templates.patch) {
+      reference_patches_(camera, config.reference_patches.patch) {
   EDGED_CHECK(camera.width() > 0 && camera.height() > 0, "camera {} has no size", name_);
   if (config.klt.window_px % 2 == 0) {
     throw InputError::format("klt.window_px = {} must be odd, e.g. {}", config.klt.window_px, config.klt.window_px + 1);
@@ -93,9 +83,9 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
   current_.build(image, config_.klt);
   increments_ = prediction ? prediction->increments : BrightnessIncrements();
   if (prediction && prediction->reference_patches) {
-    templates_.move(prediction->T_cur_prev);
+    reference_patches_.move(prediction->T_cur_prev);
   } else {
-    templates_.clear();
+    reference_patches_.clear();
   }
   if (!tracks_.empty()) {
     Matches matches = match_all(prediction, summary);
@@ -152,15 +142,15 @@ const Track* FeatureTracker::find(FeatureId id) const {
   return track != tracks_.end() && track->id == id ? &*track : nullptr;
 }
 
-void FeatureTracker::adopt(FeatureId id, const Eigen::Vector2d& pixel) {
+void FeatureTracker::add_feature(FeatureId id, const Eigen::Vector2d& pixel) {
   std::erase_if(tracks_, [&](const Track& track) { return (track.pixel - pixel).norm() < config_.merge_px; });
   const auto next = std::ranges::lower_bound(tracks_, id, {}, &Track::id);
   EDGED_CHECK(next == tracks_.end() || next->id != id, "camera {} follows feature {} already", name_, id);
   tracks_.insert(next, first_track(id, pixel));
 }
 
-bool FeatureTracker::needs_corners() const {
-  return static_cast<double>(tracks_.size()) < config_.refill_share * config_.detector.max_features;
+bool FeatureTracker::needs_detection() const {
+  return static_cast<double>(tracks_.size()) < kFrontendTuning.refill_share * config_.detector.max_features;
 }
 
 void FeatureTracker::mark_keyframe() {
@@ -170,7 +160,7 @@ void FeatureTracker::mark_keyframe() {
     track.in_keyframe = true;
   }
   keyframe_tracks_ = static_cast<int>(tracks_.size());
-  if (config_.templates.enabled) templates_.take({previous_.image(), increments_}, tracks_);
+  if (config_.reference_patches.enabled) reference_patches_.extract({previous_.image(), increments_}, tracks_);
 }
 
 KeyframeTracks FeatureTracker::since_keyframe(const Eigen::Matrix3d& R_kf_cur) const {
@@ -188,7 +178,7 @@ void FeatureTracker::remove(std::span<const FeatureId> ids) {
 void FeatureTracker::reset() {
   tracks_.clear();
   previous_.clear();
-  templates_.clear();
+  reference_patches_.clear();
   keyframe_tracks_ = 0;
 }
 
@@ -209,7 +199,7 @@ void FeatureTracker::check_image(const cv::Mat& image) const {
   }
 }
 
-/// Of each track, in the new image's camera [m].
+/// The expected position of each track in the new image's camera [m].
 std::vector<Eigen::Vector3d> FeatureTracker::expected(const TrackPrediction& prediction) const {
   std::vector<Eigen::Vector3d> points;
   points.reserve(tracks_.size());
@@ -232,7 +222,7 @@ std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vect
   return seeds;
 }
 
-CornerMotion FeatureTracker::corner_of(const Track& track, std::size_t i, const Matches& matches) {
+FeatureMotion FeatureTracker::motion_of(const Track& track, std::size_t i, const Matches& matches) {
   const Eigen::Vector2d pixel = to_eigen(matches.points[i]);
   return {pixel, pixel - track.pixel, matches.expected_C[i]};
 }
@@ -240,8 +230,7 @@ CornerMotion FeatureTracker::corner_of(const Track& track, std::size_t i, const 
 FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
                                               const std::vector<cv::Point2f>& seeds,
                                               std::vector<Eigen::Vector3d> expected_C) const {
-  Matches matches{seeds, std::vector<Fate>(from.size(), Fate::Border), std::vector<char>(from.size(), 0),
-                  std::move(expected_C)};
+  Matches matches{seeds, std::vector<char>(from.size(), 0), std::vector<char>(from.size(), 0), std::move(expected_C)};
   // On event frames the predicted position is a better start of the alignment than that of the optical flow, which
   // follows the appearance of an edge under the motion.
   const bool on_events = !increments_.image.empty();
@@ -250,18 +239,18 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
     if (!camera_.contains(to_eigen(seeds[i]))) continue;  // NaN, too
     if (!on_events || !align(i, matches)) unaligned.push_back(i);
   }
-  const bool aligned_later = !matches.expected_C.empty() && !templates_.empty();
-  const Flow forward =
-      follow(previous_, current_, select(from, unaligned), select(seeds, unaligned),
-             aligned_later ? std::min(kPredictedTopLevel, config_.klt.levels - 1) : config_.klt.levels - 1, config_.klt,
-             aligned_later ? kCoarse_px : KltConfig::epsilon_px);
+  const bool aligned_later = !matches.expected_C.empty() && !reference_patches_.empty();
+  const Flow forward = follow(
+      previous_, current_, select(from, unaligned), select(seeds, unaligned),
+      aligned_later ? std::min(kFrontendTuning.predicted_top_level, config_.klt.levels - 1) : config_.klt.levels - 1,
+      config_.klt, aligned_later ? kFrontendTuning.coarse_flow_step_px : kFrontendTuning.flow_step_px);
   std::vector<std::size_t> otherwise;  // matches, or has no reference patch
   for (std::size_t k = 0; k < unaligned.size(); ++k) {
     const std::size_t i = unaligned[k];
     matches.points[i] = forward.points[k];
-    const bool inside = camera_.contains(to_eigen(forward.points[k]), config_.border_px);
-    matches.fates[i] = !inside ? Fate::Border : forward.found[k] ? Fate::Kept : Fate::Flow;
-    if (matches.fates[i] == Fate::Kept && !align(i, matches)) otherwise.push_back(i);
+    const bool inside = camera_.contains(to_eigen(forward.points[k]), kFrontendTuning.border_px);
+    matches.kept[i] = inside && forward.found[k];
+    if (matches.kept[i] && !align(i, matches)) otherwise.push_back(i);
   }
   match_back(from, otherwise, matches);
   return matches;
@@ -271,11 +260,11 @@ FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& fr
 bool FeatureTracker::align(std::size_t i, Matches& matches) const {
   if (matches.expected_C.empty()) return false;
   const std::optional<Eigen::Vector2d> aligned =
-      templates_.align(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches));
-  if (!aligned || !camera_.contains(*aligned, config_.border_px)) return false;
+      reference_patches_.align(tracks_[i].id, {current_.image(), increments_}, motion_of(tracks_[i], i, matches));
+  if (!aligned || !camera_.contains(*aligned, kFrontendTuning.border_px)) return false;
   matches.points[i] = to_cv(*aligned);
-  matches.fates[i] = Fate::Kept;
-  matches.as_at_first[i] = 1;
+  matches.kept[i] = 1;
+  matches.matches_reference[i] = 1;
   return true;
 }
 
@@ -283,16 +272,13 @@ bool FeatureTracker::align(std::size_t i, Matches& matches) const {
 /// image.
 void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
                                 Matches& matches) const {
-  const Flow backward =
-      follow(current_, previous_, select(matches.points, which), select(from, which), kPredictedTopLevel, config_.klt);
+  const Flow backward = follow(current_, previous_, select(matches.points, which), select(from, which),
+                               kFrontendTuning.predicted_top_level, config_.klt);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const std::size_t i = which[k];
-    if (!backward.found[k] || distance(backward.points[k], from[i]) > config_.forward_backward_px) {
-      matches.fates[i] = Fate::Backward;
-    } else if (patch_correlation(previous_.image(), from[i], current_.image(), matches.points[i]) <
-               config_.min_correlation) {
-      matches.fates[i] = Fate::Appearance;
-    }
+    matches.kept[i] =
+        backward.found[k] && distance(backward.points[k], from[i]) <= config_.forward_backward_px &&
+        patch_correlation(previous_.image(), from[i], current_.image(), matches.points[i]) >= config_.min_correlation;
   }
 }
 
@@ -305,9 +291,9 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
   std::vector<Eigen::Vector3d> expected_C = expected(*prediction);
   const std::vector<cv::Point2f> seeds = projected(expected_C, prediction->offset_px);
   Matches matches = match(from, seeds, std::move(expected_C));
-  const auto kept = [](const Matches& m) { return std::count(m.fates.begin(), m.fates.end(), Fate::Kept); };
+  const auto kept = [](const Matches& m) { return std::ranges::count(m.kept, 1); };
   const auto all = static_cast<double>(from.size());
-  if (all - static_cast<double>(kept(matches)) > config_.retry_share * all) {
+  if (all - static_cast<double>(kept(matches)) > kFrontendTuning.retry_share * all) {
     // The few tracks that survive a bad prediction are likely wrong, and so is its warp: all are tracked again without
     // it.
     Matches again = match(from, from, {});
@@ -316,7 +302,7 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
   }
   std::vector<double> dx, dy;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (matches.fates[i] != Fate::Kept) continue;
+    if (!matches.kept[i]) continue;
     dx.push_back(matches.points[i].x - seeds[i].x);
     dy.push_back(matches.points[i].y - seeds[i].y);
   }
@@ -326,10 +312,9 @@ FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPredi
 
 void FeatureTracker::merge(Matches& matches) const {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (matches.fates[i] != Fate::Kept) continue;
+    if (!matches.kept[i]) continue;
     for (std::size_t j = i + 1; j < tracks_.size(); ++j) {  // j is younger, or of another camera
-      if (matches.fates[j] != Fate::Kept) continue;
-      if (distance(matches.points[i], matches.points[j]) < config_.merge_px) matches.fates[j] = Fate::Merged;
+      if (distance(matches.points[i], matches.points[j]) < config_.merge_px) matches.kept[j] = 0;
     }
   }
 }
@@ -338,29 +323,11 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
   std::vector<Track> alive;
   alive.reserve(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    switch (matches.fates[i]) {
-      case Fate::Kept:
-        break;
-      case Fate::Flow:
-        ++summary.lost_flow;
-        continue;
-      case Fate::Backward:
-        ++summary.lost_backward;
-        continue;
-      case Fate::Appearance:
-        ++summary.lost_appearance;
-        continue;
-      case Fate::Border:
-        ++summary.lost_border;
-        continue;
-      case Fate::Merged:
-        ++summary.merged;
-        continue;
-    }
-    templates_.note(tracks_[i].id, matches.as_at_first[i]);
+    if (!matches.kept[i]) continue;
+    reference_patches_.set_fits(tracks_[i].id, matches.matches_reference[i]);
     if (!matches.expected_C.empty()) {
-      templates_.learn(tracks_[i].id, {current_.image(), increments_}, corner_of(tracks_[i], i, matches),
-                       matches.as_at_first[i]);
+      reference_patches_.update_gradient(tracks_[i].id, {current_.image(), increments_},
+                                         motion_of(tracks_[i], i, matches), matches.matches_reference[i]);
     }
     Track track = tracks_[i];
     track.previous_pixel = track.pixel;

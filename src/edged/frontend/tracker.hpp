@@ -27,27 +27,21 @@ namespace edged {
 /// The predicted motion and depth of the features in the next image.
 struct TrackPrediction {
   SE3 T_cur_prev;            ///< previous camera frame to the new one
-  double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of corners without their own
-  std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a corner, where known; may be empty
+  double scene_depth = 2.0;  ///< z-depth [m] in the previous camera frame of features without their own
+  std::function<std::optional<double>(FeatureId)> depth;  ///< z-depth [m] there of a feature, where known; may be empty
   Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();    ///< added to the position predicted by the poses
-  bool reference_patches = true;                          ///< compare corners with their reference patches
-  BrightnessIncrements increments = {};                   ///< of an event frame, for these patches
+  bool reference_patches = true;                          ///< compare features with their reference patches
+  BrightnessIncrements increments = {};                   ///< for reference patches on event frames
 };
 
-/// What happened to the tracks in one image.
+/// What has become of the tracks in one image.
 struct TrackSummary {
-  int before = 0;
-  int tracked = 0;
-  int lost_flow = 0;        ///< no texture, or outside the image
-  int lost_backward = 0;    ///< failed the forward-backward check
-  int lost_appearance = 0;  ///< the patch no longer correlates
-  int lost_border = 0;
-  int merged = 0;                  ///< merged into an older track
+  int before = 0, tracked = 0;     ///< number of tracks
   bool prediction_failed = false;  ///< the old positions were better seeds and were used
   Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - expected; zero without prediction
 };
 
-/// A cycle is track, reject_outliers, then at a keyframe (or when needs_corners) detect, and mark_keyframe at a
+/// A cycle is track, reject_outliers, then at a keyframe (or when needs_detection) detect, and mark_keyframe at a
 /// keyframe. Deterministic; one object per camera, not thread safe.
 class FeatureTracker {
  public:
@@ -64,18 +58,18 @@ class FeatureTracker {
   /// now to camera then; nothing if the gyro is saturated. Tracks younger than the reference are kept.
   OutlierResult reject_outliers(Reference reference, const std::optional<Eigen::Matrix3d>& R_ref_cur);
 
-  /// Adds corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes ids from
-  /// next_id. Returns how many. most: live tracks to end up with, if fewer than the configured number.
+  /// Adds features at corners in free cells; image is usually the one just tracked, or an enhanced version of it. Takes
+  /// ids from next_id. Returns how many. most: live tracks to end up with, if fewer than the configured number.
   int detect(const cv::Mat& image, FeatureId& next_id, int most = std::numeric_limits<int>::max());
 
   /// Adds the feature of another camera, found here in the newest image; not one that is followed already. A track at
   /// that place is the same feature under another name and ends.
-  void adopt(FeatureId id, const Eigen::Vector2d& pixel);
+  void add_feature(FeatureId id, const Eigen::Vector2d& pixel);
   /// Null where it is not followed.
   const Track* find(FeatureId id) const;
 
   /// True when fewer tracks are alive than refill_share of max_features.
-  bool needs_corners() const;
+  bool needs_detection() const;
 
   /// From now on the newest image is the keyframe that parallax and outliers are measured against.
   void mark_keyframe();
@@ -96,13 +90,12 @@ class FeatureTracker {
   const CameraModel& camera() const { return camera_; }
 
  private:
-  enum class Fate { Kept, Flow, Backward, Appearance, Border, Merged };
   struct Matches {
     std::vector<cv::Point2f> points;
-    std::vector<Fate> fates;
-    std::vector<char> as_at_first;  ///< set to the position that matches the reference patch
+    std::vector<char> kept;               ///< set where the track goes on
+    std::vector<char> matches_reference;  ///< set to the position that matches the reference patch
     std::vector<Eigen::Vector3d>
-        expected_C;  ///< of each track, for the warp of its reference patch [m]; empty: unknown
+        expected_C;  ///< one per track, for the warp of its reference patch [m]; empty: unknown
   };
 
   void check_image(const cv::Mat& image) const;
@@ -114,7 +107,7 @@ class FeatureTracker {
                 std::vector<Eigen::Vector3d> expected_C) const;
   Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
   /// The i-th track in the newest image.
-  static CornerMotion corner_of(const Track& track, std::size_t i, const Matches& matches);
+  static FeatureMotion motion_of(const Track& track, std::size_t i, const Matches& matches);
   bool align(std::size_t i, Matches& matches) const;
   void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
   void merge(Matches& matches) const;
@@ -127,7 +120,7 @@ class FeatureTracker {
   std::vector<Track> tracks_;  // by id, so oldest first
   Timestamp now_;
   int keyframe_tracks_ = 0;
-  Templates templates_;
+  ReferencePatches reference_patches_;
   BrightnessIncrements increments_;  // of the newest image
   ImagePyramid previous_, current_;  // current_ is the newest only while track runs
 };

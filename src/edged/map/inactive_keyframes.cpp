@@ -88,8 +88,8 @@ std::vector<ConditionalPose> InactiveKeyframes::activate(std::span<const std::ui
   return activated;
 }
 
-/// Of the arcs from its inactive parents that to the one deactivated first is reversed first: none of the other parents
-/// depends on that one.
+/// Among the arcs from its inactive parents that to the one deactivated first is reversed first: none of the other
+/// parents depends on that one.
 ConditionalPose InactiveKeyframes::activate(std::uint64_t order) {
   ConditionalPose pose = std::move(poses_.extract(order).mapped());
   order_[pose.keyframe] = kActive;

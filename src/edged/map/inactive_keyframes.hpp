@@ -28,7 +28,7 @@ struct ConditionalPose {
   };
   std::uint32_t keyframe = 0;
   std::vector<Parent> parents;
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the independent error
+  Matrix6d covariance = Matrix6d::Zero();  ///< that of the independent error
 };
 
 /// By the joint covariance of the keyframe and of those that become its parents, in this order, six rows each.
@@ -37,12 +37,12 @@ ConditionalPose conditional_pose(std::uint32_t keyframe, std::span<const std::ui
 
 class InactiveKeyframes {
  public:
-  static constexpr std::size_t kMostParents = 12;  ///< of one pose
+  static constexpr std::size_t kMostParents = 12;  ///< a pose has at most
 
   /// The keyframe is deactivated; its parents are active.
   void add(ConditionalPose pose);
-  /// Those of the keyframes that are inactive become active: their poses, with parents that were active, or before it
-  /// in this list. What they had in common with keyframes that stay inactive is in these, which get them as parents.
+  /// Activates the keyframes that are inactive. Returns their poses, with parents that were active, or before it in
+  /// this list. What they had in common with keyframes that stay inactive is in these, which get them as parents.
   std::vector<ConditionalPose> activate(std::span<const std::uint32_t> keyframes);
   /// Forgets a keyframe that is inactive or no parent. Keyframes after it get a number less.
   void remove(std::size_t keyframe);
@@ -64,7 +64,7 @@ class InactiveKeyframes {
 
   static constexpr std::uint64_t kActive = 0;
   std::map<std::uint64_t, ConditionalPose> poses_;  ///< by the order of their deactivation
-  std::vector<std::uint64_t> order_;                ///< the same by keyframe
+  std::vector<std::uint64_t> order_;                ///< keys of poses_ by keyframe
   std::uint64_t newest_ = kActive;
 };
 

@@ -81,7 +81,7 @@ TEST(MapFilter, ClosesALoopByPositionWhereDriftIsLoosened) {
   std::vector<double> walk;
   for (int k = 0; k < Ring::kSteps; ++k) walk.push_back(4.0 * k / Ring::kSteps);
   Ring ring, loosened;
-  loosened.filter().loosen(walk, 4.0);
+  loosened.filter().inflate(walk, 4.0);
   EXPECT_GT(ring.filter().squared_distance(0, T_K_B, ring.covariance), 22.5);
   EXPECT_LT(loosened.filter().squared_distance(0, T_K_B, ring.covariance), 22.5);
   loosened.filter().close(0, T_K_B, ring.covariance);

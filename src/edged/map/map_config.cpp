@@ -13,13 +13,9 @@ void KeyframeMapConfig::visit(ConfigFields& fields) {
              {"s", 0, 100, "No keyframe is added earlier than this after a start, because its scale is inaccurate."});
   fields.add("min_age_s", min_age_s,
              {"s", 0, 100, "Younger keyframes are not matched, because the window has their points."});
-  fields.add("max_view_angle_deg", max_view_angle_deg,
-             {"deg", 1, 90, "A point is not matched when its viewing direction has changed by more."});
   fields.add(
       "max_keyframes", max_keyframes,
       {"", 2, 10000, "Largest number of keyframes. Beyond it the one that was not matched for longest is removed."});
-  fields.add("candidates", candidates,
-             {"", 1, 1000, "Number of nearest keyframes whose points are matched in an image."});
 }
 
 void MapFilterConfig::visit(ConfigFields& fields) {

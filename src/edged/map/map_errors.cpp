@@ -5,16 +5,9 @@
 #include <algorithm>
 
 #include "edged/core/angles.hpp"
+#include "edged/map/tuning.hpp"
 
 namespace edged {
-namespace {
-
-// Of the odometry: also with the accelerometer's errors of cheap IMUs, 0.05 deg with good ones.
-constexpr double kTilt_rad = 0.3 * kDegree;
-constexpr double kTiltTime_s = 10.0;  // after which its error is another one
-
-}  // namespace
-
 std::optional<LinearizedObservation> linearised(const MapObservation& observation, const SE3& T_M_B, const SE3& T_M_K,
                                                 const SE3& T_B_C) {
   using Matrix23d = Eigen::Matrix<double, 2, 3>;
@@ -52,7 +45,8 @@ Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, doubl
 }
 
 GravityObservation observed_gravity(const SE3& T_O_B, double dt) {
-  return {T_O_B.R().row(2), std::min(dt / kTiltTime_s, 1.0) / (kTilt_rad * kTilt_rad)};
+  constexpr double kTilt_rad = kMapTuning.tilt_deg * kDegree;
+  return {T_O_B.R().row(2), std::min(dt / kMapTuning.tilt_time_s, 1.0) / (kTilt_rad * kTilt_rad)};
 }
 
 /// r = up_M - up_B, both in B; J = skew(up_M).

@@ -23,8 +23,8 @@ struct MapObservationOf {
   Vector3 p_K = Vector3::Zero();            ///< in the body frame of the keyframe
   Vector3 depth_sigma_K = Vector3::Zero();  ///< change of p_K with one sigma of its depth
   Vector2 seen = Vector2::Zero();           ///< on the unit plane of the camera
-  Scalar sigma = 0;                         ///< of seen, each coordinate
-  std::uint32_t camera = 0;                 ///< of its image: index of T_B_C
+  Scalar sigma = 0;                         ///< sigma of each coordinate of `seen`
+  std::uint32_t camera = 0;                 ///< index of T_B_C of its image
 
   template <typename Other>
   MapObservationOf<Other> cast() const {
@@ -38,7 +38,7 @@ struct MapObservationOf {
 };
 using MapObservation = MapObservationOf<double>;
 
-/// Of an observation: residual, Jacobians by the errors of the body and of its keyframe, and noise.
+/// A linearized observation: residual, Jacobians by the errors of the body and of its keyframe, and noise.
 struct LinearizedObservation {
   Eigen::Vector2d r;
   Eigen::Matrix<double, 2, 6> by_body, by_keyframe;
@@ -63,7 +63,8 @@ struct GravityObservation {
 /// dt: the time that it stands for [s]. The odometry's tilt never drifts, but its error changes slowly.
 GravityObservation observed_gravity(const SE3& T_O_B, double dt);
 
-/// Its part in the normal equations of a pose, H of the Gauss-Newton step and g = J^T W r, by the rotation error alone.
+/// The observation of gravity in the normal equations of a pose, H of the Gauss-Newton step and g = J^T W r, by the
+/// rotation error alone.
 struct LinearizedGravity {
   Eigen::Matrix3d H;
   Eigen::Vector3d g;

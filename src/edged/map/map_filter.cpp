@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "edged/core/statistics.hpp"
+#include "edged/map/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -18,11 +19,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kCauchy = 2.0;             // [sigma]
 constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
-// Parents of a keyframe that is deactivated. With one, what it has in common with the others is lost at each return.
-constexpr std::size_t kParents = 3;
-constexpr std::size_t kParentCandidates = 10;  // keyframes that come into question for the next parent, after the first
 
 }  // namespace
 
@@ -139,7 +136,7 @@ ConditionalPose MapFilter::conditional(std::size_t keyframe, Eigen::Index row) c
       std::iota(rows.begin() + 6 * (i + 1), rows.begin() + 6 * (i + 2), row_[parents[i]]);
     return conditional_pose(static_cast<std::uint32_t>(keyframe), parents, P_(rows, rows));
   };
-  while (!others.empty() && parents.size() < kParents) {
+  while (!others.empty() && parents.size() < kMapTuning.parents) {
     std::vector<std::pair<double, std::uint32_t>> left;  // volume of its error
     for (const std::uint32_t other : others) {
       parents.push_back(other);
@@ -150,7 +147,8 @@ ConditionalPose MapFilter::conditional(std::size_t keyframe, Eigen::Index row) c
     std::ranges::sort(left);
     parents.push_back(left.front().second);
     others.clear();
-    for (std::size_t i = 1; i < std::min(left.size(), kParentCandidates); ++i) others.push_back(left[i].second);
+    for (std::size_t i = 1; i < std::min(left.size(), kMapTuning.parent_candidates); ++i)
+      others.push_back(left[i].second);
   }
   return given();
 }
@@ -224,7 +222,7 @@ MapFilter::Information MapFilter::gather(std::span<const MapObservation> observa
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const LinearizedObservation& row = rows[i];
     const double squared = row.r.dot(expected_covariance(row, observations[i].keyframe).inverse() * row.r);
-    const Eigen::Matrix2d W = row.R.inverse() / (1.0 + squared / (kCauchy * kCauchy));
+    const Eigen::Matrix2d W = row.R.inverse() / (1.0 + squared / (kMapTuning.cauchy_sigmas * kMapTuning.cauchy_sigmas));
     const Eigen::Index k = sum.place.at(observations[i].keyframe);
     const Eigen::Matrix<double, 6, 2> body_W = row.by_body.transpose() * W,
                                       keyframe_W = row.by_keyframe.transpose() * W;
@@ -239,8 +237,8 @@ MapFilter::Information MapFilter::gather(std::span<const MapObservation> observa
 }
 
 /// Root of the median squared residual of the rows after the correction of the poses [sigma of each].
-double MapFilter::misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
-                         const VectorXd& error) const {
+double MapFilter::median_residual(std::span<const MapObservation> observations,
+                                  std::span<const LinearizedObservation> rows, const VectorXd& error) const {
   std::vector<double> squared;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Eigen::Vector2d left = rows[i].r + rows[i].by_body * error.head<6>() +
@@ -285,8 +283,8 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
   Information sum = gather(observations, rows);
   add_gravity(sum);
   const Update update = solved(sum);
-  if (!(misfit(observations, rows, update.error) < config_.max_misfit)) return std::nullopt;
-  shrink(update);
+  if (!(median_residual(observations, rows, update.error) < config_.max_misfit)) return std::nullopt;
+  update_covariance(update);
   updated_ = t_;
   return correct(update.error);
 }
@@ -308,8 +306,8 @@ MapFilter::LinearizedPose MapFilter::linearise(std::size_t keyframe, const SE3& 
   return pose;
 }
 
-/// Those of a random walk at two times have the variance of the earlier one in common.
-void MapFilter::loosen(std::span<const double> keyframes, double body) {
+/// The errors of a random walk at two times have the variance of the earlier one in common.
+void MapFilter::inflate(std::span<const double> keyframes, double body) {
   std::vector<std::pair<Eigen::Index, double>> walk = {{0, body}};
   for (const std::size_t k : active()) walk.emplace_back(row_[k], keyframes[k]);
   for (const auto& [row, variance] : walk)
@@ -331,14 +329,14 @@ SE3 MapFilter::close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& cov
   Information sum{{{keyframe, 6}}, weighed * pose.J, weighed * pose.r};
   add_gravity(sum);
   const Update update = solved(sum);
-  shrink(update);
+  update_covariance(update);
   updated_ = t_;
   return correct(update.error);
 }
 
 /// P -= P_m A P_m^T in the rows and columns m: a half of it, and the other as that. Of fixed keyframes only their
 /// correlation with the body, which comes first.
-void MapFilter::shrink(const Update& update) {
+void MapFilter::update_covariance(const Update& update) {
   const std::span<const Eigen::Index> m = update.moved;
   const auto n = static_cast<Eigen::Index>(m.size());
   MatrixXd less(n, n);

@@ -15,6 +15,7 @@
 
 #include "edged/map/inactive_keyframes.hpp"
 #include "edged/map/map_errors.hpp"
+#include "edged/map/tuning.hpp"
 #include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
@@ -24,10 +25,9 @@ namespace edged {
 /// T_M_O is OdomToMap's: the filter takes it and returns its correction.
 class MapFilter {
  public:
-  static constexpr int kMaxActive = 100;  ///< time and memory grow with the square
-
   /// fixed_keyframes: their poses never change; their covariance counts in each update all the same (a Schmidt filter).
-  explicit MapFilter(const MapFilterConfig& config, bool fixed_keyframes = false, int max_active = kMaxActive)
+  explicit MapFilter(const MapFilterConfig& config, bool fixed_keyframes = false,
+                     int max_active = kMapTuning.active_keyframes)
       : config_(config), fixed_keyframes_(fixed_keyframes), max_active_(max_active) {}
 
   /// A new frame O of the odometry: its pose in M is uncertain, with these sigmas [m], [rad] of position and yaw.
@@ -50,7 +50,7 @@ class MapFilter {
 
   /// More drift of the position than the options have: a random walk in M, with these variances at the keyframes, by
   /// index, and at the body, each the sum of those before it [m^2].
-  void loosen(std::span<const double> keyframes, double body);
+  void inflate(std::span<const double> keyframes, double body);
 
   /// Squared Mahalanobis distance of the body's pose T_K_B relative to an active keyframe from the predicted one;
   /// covariance: of the error of T_K_B.
@@ -62,7 +62,7 @@ class MapFilter {
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
   /// Covariance of the body relative to the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
-  /// Of the active keyframes, six rows each.
+  /// Joint covariance of the active keyframes, six rows each.
   Eigen::MatrixXd keyframe_covariance() const;
   std::vector<ConditionalPose> inactive() const { return inactive_.poses(); }
   /// One sigma of the predicted position of an observation on the unit plane.
@@ -79,7 +79,7 @@ class MapFilter {
   };
   Information gather(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows) const;
   void add_gravity(Information& sum) const;
-  /// Of P_ and the errors by an information.
+  /// The update of P_ and of the errors by an information.
   struct Update {
     std::vector<Eigen::Index> moved;  ///< rows of P_ that change
     Eigen::MatrixXd P_m, A;           ///< P -= P_m A P_m^T there
@@ -92,8 +92,8 @@ class MapFilter {
     Eigen::Matrix<double, 6, 12> J;
   };
   LinearizedPose linearise(std::size_t keyframe, const SE3& T_K_B) const;
-  double misfit(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
-                const Eigen::VectorXd& error) const;
+  double median_residual(std::span<const MapObservation> observations, std::span<const LinearizedObservation> rows,
+                         const Eigen::VectorXd& error) const;
   SE3 correct(const Eigen::VectorXd& error);
   std::vector<std::size_t> active() const;
   void deactivate_beyond_limit();
@@ -101,7 +101,7 @@ class MapFilter {
   ConditionalPose conditional(std::size_t keyframe, Eigen::Index row) const;
   void fill_rows(const ConditionalPose& pose);
   void select_rows();
-  void shrink(const Update& update);
+  void update_covariance(const Update& update);
 
   MapFilterConfig config_;
   bool fixed_keyframes_;

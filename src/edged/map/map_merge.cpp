@@ -8,35 +8,31 @@
 #include <utility>
 #include <vector>
 
+#include "edged/map/tuning.hpp"
+
 namespace edged {
 namespace {
-
-constexpr double kSamePlace_m = 0.15, kSamePlace_rad = 0.05;  // of the poses of the other map by two keyframes
-constexpr std::size_t kFewestKeyframes = 3;
-constexpr double kLeastShare = 0.5;  // of the recognised keyframes
-// Of the common result.
-constexpr double kPositionSigma_m = 0.05, kRotationSigma_rad = 0.02;
 
 double focal_of(const SavedMap& map, const std::string& camera) {
   const auto found = std::ranges::find(map.cameras, camera, &SavedMap::Camera::name);
   return found == map.cameras.end() ? 0.0 : found->focal;
 }
 
-/// Of each recognized keyframe of `other`: the pose of its body, in both frames.
+/// The pose of the body at a recognized keyframe of `other`, in both frames.
 struct Hypothesis {
   SE3 T_A_K, T_B_K;
   SE3 T_A_B() const { return T_A_K * T_B_K.inverse(); }
 };
 
 /// What the descriptors of one view of a keyframe of B find in A.
-Recognition recognised(const KeyframeMap& places, const SavedMap& map, const MapView& view, const SE3& T_B_K) {
+Recognition recognized(const KeyframeMap& places, const SavedMap& map, const MapView& view, const SE3& T_B_K) {
   std::vector<std::optional<Descriptor>> descriptors;
   std::vector<Eigen::Vector2d> points;
   for (const MapPoint& point : view.points) {
     descriptors.push_back(point.descriptor);
     points.push_back(point.point);
   }
-  return places.recognise({view.camera, {}, map.T_M_K}, descriptors, points, (T_B_K * view.T_B_C).rotation(),
+  return places.recognize({view.camera, {}, map.T_M_K}, descriptors, points, (T_B_K * view.T_B_C).rotation(),
                           focal_of(map, view.camera));
 }
 
@@ -55,7 +51,7 @@ Search search(const SavedMap& map, const SavedMap& other) {
     for (const MapView& view : other.keyframes[k].views) {
       if (focal_of(map, view.camera) <= 0.0) continue;
       comparable = true;
-      const Recognition found = recognised(places, map, view, other.T_M_K[k]);
+      const Recognition found = recognized(places, map, view, other.T_M_K[k]);
       if (found.agreeing > search.nearest.agreeing) search.nearest = found;
       if (!found.T_M_C) continue;
       search.hypotheses.push_back({*found.T_M_C * view.T_B_C.inverse(), other.T_M_K[k]});
@@ -69,7 +65,8 @@ Search search(const SavedMap& map, const SavedMap& other) {
 /// Whether `hypothesis` agrees with T_A_B, too.
 bool agrees(const SE3& T_A_B, const Hypothesis& hypothesis) {
   const SE3 off = hypothesis.T_A_K.inverse() * T_A_B * hypothesis.T_B_K;
-  return off.translation().norm() < kSamePlace_m && so3::log(off.rotation()).norm() < kSamePlace_rad;
+  return off.translation().norm() < kMapTuning.loop_agreement_m &&
+         so3::log(off.rotation()).norm() < kMapTuning.same_place_rad;
 }
 
 /// The keyframes of the other map with their covariance in A, of which the error of T_A_B is a part: position in A and
@@ -114,7 +111,7 @@ class AddedPoses {
           Eigen::Matrix3d::Zero(), T_A_K.R().transpose();
     }
     Vector6d sigmas;
-    sigmas << Eigen::Vector3d::Constant(kPositionSigma_m), Eigen::Vector3d::Constant(kRotationSigma_rad);
+    sigmas << Eigen::Vector3d::Constant(kMapTuning.confirmed_m), Eigen::Vector3d::Constant(kMapTuning.confirmed_rad);
     return turn * in_B * turn.transpose() + J * sigmas.cwiseAbs2().asDiagonal() * J.transpose();
   }
 
@@ -135,8 +132,8 @@ MapAlignment find_map_in(const SavedMap& map, const SavedMap& other) {
     return {{},
             fmt::format("none of its {} keyframes is recognized there: in the nearest {} features agree on a place, of "
                         "{} that are similar; {} and {:.0f} % are needed",
-                        keyframes, nearest.agreeing, nearest.similar, Recognition::kFewest,
-                        100.0 * Recognition::kLeastShare)};
+                        keyframes, nearest.agreeing, nearest.similar, kMapTuning.min_inliers,
+                        100.0 * kMapTuning.min_inlier_share)};
   }
   std::size_t most = 0;
   SE3 T_A_B;
@@ -146,12 +143,13 @@ MapAlignment find_map_in(const SavedMap& map, const SavedMap& other) {
         std::ranges::count_if(hypotheses, [&](const Hypothesis& each) { return agrees(this_T_A_B, each); }));
     if (supporters > most) most = supporters, T_A_B = this_T_A_B;
   }
-  if (most >= kFewestKeyframes && static_cast<double>(most) >= kLeastShare * static_cast<double>(hypotheses.size()))
+  if (most >= kMapTuning.merge_keyframes &&
+      static_cast<double>(most) >= kMapTuning.merge_share * static_cast<double>(hypotheses.size()))
     return {T_A_B, ""};
   return {{},
           fmt::format("{} of its {} keyframes are recognized there, {} of them at one place of the two maps to each "
                       "other; {} and {:.0f} % are needed",
-                      hypotheses.size(), keyframes, most, kFewestKeyframes, 100.0 * kLeastShare)};
+                      hypotheses.size(), keyframes, most, kMapTuning.merge_keyframes, 100.0 * kMapTuning.merge_share)};
 }
 
 SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {
@@ -162,7 +160,7 @@ SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {
   for (const SE3& T_B_K : other.T_M_K) both.T_M_K.push_back(T_A_B * T_B_K);
   // Both end at the same instant before any other run: those of `other` come before those of `map`.
   const Duration by = Timestamp() - map.keyframes.front().t;
-  for (MapKeyframe& keyframe : both.keyframes) keyframe.t -= by, keyframe.found_at -= by;
+  for (MapKeyframe& keyframe : both.keyframes) keyframe.t -= by, keyframe.matched_at -= by;
 
   const AddedPoses added(other, T_A_B, both.T_M_K);
   both.inactive = added.inactive();

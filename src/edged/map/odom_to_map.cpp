@@ -28,12 +28,12 @@ void OdomToMap::correct(Timestamp t, const SE3& T_M_O) {
   starts_.back().push_back({t, T_M_O});
 }
 
-void OdomToMap::forget_guess() {
+void OdomToMap::drop_dead_reckoning() {
   Trajectory& placed = starts_.back();
   placed.erase(placed.begin(), std::prev(placed.end()));
 }
 
-void OdomToMap::move_before(const SE3& T_M_before) {
+void OdomToMap::transform_earlier(const SE3& T_M_before) {
   for (auto start = starts_.begin(); start != std::prev(starts_.end()); ++start) {
     for (StampedPose& placed : *start) placed.T = T_M_before * placed.T;
   }

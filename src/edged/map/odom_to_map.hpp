@@ -26,11 +26,11 @@ class OdomToMap {
   /// The map has corrected T_M_O, from t on.
   void correct(Timestamp t, const SE3& T_M_O);
   /// The dead reckoning to the newest start was far off: its newest T_M_O replaces all since that start.
-  void forget_guess();
+  void drop_dead_reckoning();
   /// All starts before the newest lay in another frame than M.
-  void move_before(const SE3& T_M_before);
+  void transform_earlier(const SE3& T_M_before);
   /// Starts a new history from here.
-  void forget_history() { starts_.clear(); }
+  void clear_history() { starts_.clear(); }
 
   const SE3& T_M_O() const { return T_M_O_; }
   /// As it was at t, in the time of that start of the history.

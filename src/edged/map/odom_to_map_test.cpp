@@ -53,9 +53,9 @@ TEST(OdomToMap, KnowsWhereOWasAtEachTimeOfEachStart) {
   EXPECT_EQ(at(0, 4), 1.0);
   EXPECT_EQ(at(1, 6), 1.0) << "a new start continues from the pose of the last one";
   EXPECT_EQ(at(1, 7), 2.0);
-  odom_to_map.forget_guess();
+  odom_to_map.drop_dead_reckoning();
   EXPECT_EQ(at(1, 6), 2.0) << "dead reckoning was wrong since the start";
-  odom_to_map.move_before(x(10.0));
+  odom_to_map.transform_earlier(x(10.0));
   EXPECT_EQ(at(0, 2), 10.0);
   EXPECT_EQ(at(1, 6), 2.0);
   EXPECT_EQ(odom_to_map.T_M_O().translation().x(), 2.0);
@@ -65,7 +65,7 @@ TEST(OdomToMap, ForgetsItsHistoryButNotWhereOIs) {
   OdomToMap odom_to_map;
   odom_to_map.restart(SE3(), {});
   odom_to_map.correct({}, SE3(Eigen::Quaterniond::Identity(), {3, 0, 0}));
-  odom_to_map.forget_history();
+  odom_to_map.clear_history();
   odom_to_map.restart(SE3(), {});
   EXPECT_EQ(odom_to_map.T_M_O(0, {}).translation().x(), 3.0);
 }

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "edged/core/check.hpp"
+#include "edged/map/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -22,7 +23,6 @@ constexpr std::uint32_t kVersion = 3;
 constexpr std::uint32_t kOneView = 1;    // the version whose keyframes have one view each
 constexpr std::uint32_t kAllActive = 2;  // the last version whose covariance is of all keyframes
 constexpr std::size_t kMostCameras = 16, kMostKeyframes = 10'000, kMostPoints = 10'000, kLongestName = 200;
-constexpr double kSameFocal = 0.02;  // share: difference of two calibrations of one lens
 constexpr Duration kBefore = std::chrono::seconds(1), kOldest = std::chrono::hours(24 * 365 * 100);
 
 [[noreturn]] void refuse(const char* why) {
@@ -116,8 +116,8 @@ void fields_of(auto& archive, MapPoint& point) {
     for (std::uint64_t& word : *point.descriptor) archive(word);
   }
   fields_of(archive, point.pixel);
-  archive(point.tried);
-  archive(point.found);
+  archive(point.searched);
+  archive(point.matched);
 }
 
 void fields_of(auto& archive, MapView& view) {
@@ -129,7 +129,7 @@ void fields_of(auto& archive, MapView& view) {
 
 void fields_of(auto& archive, MapKeyframe& keyframe) {
   fields_of(archive, keyframe.t);
-  fields_of(archive, keyframe.found_at);
+  fields_of(archive, keyframe.matched_at);
   if (archive.version == kOneView) {
     keyframe.views.resize(1);
   } else {
@@ -190,13 +190,15 @@ void check_inactive(const SavedMap& map) {
 void check_values(const SavedMap& map) {
   const auto past = [](Timestamp t) { return t < Timestamp() && t > Timestamp() - kOldest; };
   const auto unit = [](const SE3& T) { return std::abs(T.rotation().norm() - 1.0) < 1e-6; };
-  const auto sound = [](const MapPoint& p) { return p.inverse_depth > 0.0 && p.sigma >= 0.0 && p.tried >= p.found; };
+  const auto sound = [](const MapPoint& p) {
+    return p.inverse_depth > 0.0 && p.sigma >= 0.0 && p.searched >= p.matched;
+  };
   const auto usable = [&](const MapView& view) {
     return !view.points.empty() && std::ranges::all_of(view.points, sound) && unit(view.T_B_C);
   };
   for (const MapKeyframe& keyframe : map.keyframes) {
     if (keyframe.views.empty() || !std::ranges::all_of(keyframe.views, usable) || !past(keyframe.t) ||
-        !past(keyframe.found_at))
+        !past(keyframe.matched_at))
       refuse("a keyframe in it is invalid");
   }
   if (!std::ranges::all_of(map.T_M_K, unit) || (map.covariance.diagonal().array() < 0.0).any())
@@ -208,9 +210,9 @@ void check_values(const SavedMap& map) {
 /// Shifts times so that the newest is before any time of another run.
 void set_back(std::vector<MapKeyframe>& keyframes) {
   Timestamp newest = Timestamp::min();
-  for (const MapKeyframe& keyframe : keyframes) newest = std::max({newest, keyframe.t, keyframe.found_at});
+  for (const MapKeyframe& keyframe : keyframes) newest = std::max({newest, keyframe.t, keyframe.matched_at});
   const Duration by = newest - (Timestamp() - kBefore);
-  for (MapKeyframe& keyframe : keyframes) keyframe.t -= by, keyframe.found_at -= by;
+  for (MapKeyframe& keyframe : keyframes) keyframe.t -= by, keyframe.matched_at -= by;
 }
 
 }  // namespace
@@ -225,14 +227,14 @@ void check_fits(const SavedMap& map, const Rig& rig) {
     any = true;
     const CameraModel& now = same->model;
     if (now.width() != camera.width || now.height() != camera.height ||
-        std::abs(now.mean_focal() - camera.focal) > kSameFocal * camera.focal) {
+        std::abs(now.mean_focal() - camera.focal) > kMapTuning.same_focal_share * camera.focal) {
       throw InputError::format(
-          "made with another lens: camera {} of {}x{} px, focal length {:.1f} px; now {}x{}, {:.1f}", camera.name,
+          "created with another lens: camera {} of {}x{} px, focal length {:.1f} px; now {}x{}, {:.1f}", camera.name,
           camera.width, camera.height, camera.focal, now.width(), now.height(), now.mean_focal());
     }
   }
   if (!any)
-    throw InputError::format("made with other cameras: {}; use it in a mode and with a rig that have one", names);
+    throw InputError::format("created with other cameras: {}; use it in a mode and with a rig that have one", names);
 }
 
 std::string to_bytes(const SavedMap& map) {

@@ -24,8 +24,8 @@ struct SavedMap {
   };
   std::vector<Camera> cameras;
   std::vector<MapKeyframe> keyframes;  ///< oldest first
-  std::vector<SE3> T_M_K;              ///< of the body, one per keyframe
-  Eigen::MatrixXd covariance;          ///< of T_M_K but of those in `inactive`, six rows each; errors as in MapFilter
+  std::vector<SE3> T_M_K;              ///< pose of the body, one per keyframe
+  Eigen::MatrixXd covariance;          ///< joint, of T_M_K without `inactive`, six rows each; errors as in MapFilter
   std::vector<ConditionalPose> inactive{};  ///< their parents: active, or later in this list
 };
 

@@ -35,7 +35,7 @@ SavedMap some_map() {
       point.patch.pixels.fill(static_cast<std::uint8_t>(10 * i + k));
       if (i != 2) point.descriptor = Descriptor{1U + static_cast<unsigned>(i), 2, 3, ~std::uint64_t{0}};
       point.pixel = {100.0 + i, 50.0};
-      point.tried = 7, point.found = 5;
+      point.searched = 7, point.matched = 5;
       view.points.push_back(point);
     }
     map.keyframes.push_back({Timestamp() + seconds(10 + k), Timestamp() + seconds(40 - k), {view}});
@@ -61,7 +61,7 @@ void expect_equal(const MapView& a, const MapView& b) {
     EXPECT_EQ(a.points[i].point, b.points[i].point);
     EXPECT_EQ(a.points[i].patch.pixels, b.points[i].patch.pixels);
     EXPECT_EQ(a.points[i].descriptor, b.points[i].descriptor);
-    EXPECT_EQ(a.points[i].found, b.points[i].found);
+    EXPECT_EQ(a.points[i].matched, b.points[i].matched);
   }
 }
 
@@ -103,7 +103,7 @@ TEST(SavedMap, ComesBackAsItWas) {
 
 TEST(SavedMap, LiesBeforeTheNextRun) {
   const SavedMap back = saved_map_from_bytes(to_bytes(some_map()));
-  EXPECT_EQ(back.keyframes[0].found_at, Timestamp() - seconds(1));  // 40 s, the newest of all
+  EXPECT_EQ(back.keyframes[0].matched_at, Timestamp() - seconds(1));  // 40 s, the newest of all
   EXPECT_EQ(back.keyframes[2].t, Timestamp() - seconds(29));
 }
 

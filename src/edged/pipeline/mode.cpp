@@ -15,12 +15,23 @@ namespace {
 
 const std::map<std::string, Mode> kModes = {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}};
 
+const char* kind_of(Modality modality) { return modality == Modality::Events ? "event" : "frame"; }
+
 std::string listed(const Rig& rig) {
   std::string list;
   for (const RigCamera& camera : rig.cameras)
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name,
                         camera.modality == Modality::Events ? "events" : "frames");
   return list;
+}
+
+void check_names(const Rig& rig, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
+      throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));
+    if (std::ranges::count(names, name) > 1)
+      throw InputError::format("option 'cameras': '{}' is there twice; rig '{}' has {}", name, rig.name, listed(rig));
+  }
 }
 
 }  // namespace
@@ -37,12 +48,7 @@ std::vector<std::string> camera_names(const std::string& list) {
 
 Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted) {
   const std::vector<std::string> names = camera_names(wanted == kFirstCameras ? "" : wanted);
-  for (const std::string& name : names) {
-    if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
-      throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));
-    if (std::ranges::count(names, name) > 1)
-      throw InputError::format("option 'cameras': '{}' is there twice; rig '{}' has {}", name, rig.name, listed(rig));
-  }
+  check_names(rig, names);
   Rig used{rig.name, {}};
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
     if (!uses(mode, modality)) continue;
@@ -52,12 +58,11 @@ Rig used_cameras(const Rig& rig, Mode mode, const std::string& wanted) {
       if (chosen && camera.modality == modality) used.cameras.push_back(camera);
     }
     if (used.cameras.size() > before) continue;
-    const bool events = modality == Modality::Events;
     if (rig.find(modality) != nullptr)
       throw InputError::format("option 'cameras': '{}' names no {} camera, which --mode {} needs; there are {}", wanted,
-                               events ? "event" : "frame", mode_name(mode), listed(rig));
-    throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name,
-                             events ? "event" : "frame", events ? "frames" : "events");
+                               kind_of(modality), mode_name(mode), listed(rig));
+    throw InputError::format("rig '{}' has no {} camera: choose --mode {} or another rig", rig.name, kind_of(modality),
+                             modality == Modality::Events ? "frames" : "events");
   }
   return used;
 }

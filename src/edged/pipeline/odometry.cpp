@@ -4,11 +4,13 @@
 
 #include <utility>
 
+#include "edged/core/check.hpp"
 #include "edged/pipeline/input/measurement_validator.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
+#include "edged/pipeline/localization/localization.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "edged/pipeline/packet_odometry.hpp"
+#include "edged/pipeline/vision/vision.hpp"
 
 namespace edged {
 
@@ -16,44 +18,61 @@ struct Odometry::Impl {
   Impl(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config, const FeedConfig& feed)
       : Impl(rig, used_cameras(rig, mode, config.cameras), noise, config, feed) {}
   Impl(const Rig& rig, const Rig& used, const ImuNoise& noise, const OdometryConfig& config, const FeedConfig& feed)
-      : intake(rig, used, feed.delays),
+      : validator(rig, used, feed.delays),
         new_packetizer([used, packets = config.packets](const PacketizerCounters& so_far) {
           return Packetizer(used, packets, so_far);
         }),
         packetizer(new_packetizer({})),
-        packet_odometry(used, noise, config, feed.inference) {}
+        localization(used, noise, config, timings),
+        vision(without_offsets(used), config, feed.inference, timings) {}
 
   std::optional<Packet> next_packet();
+  Step process(Packet packet);
 
-  Intake intake;               // any thread's
-  StatePrediction prediction;  // any thread's
+  MeasurementValidator validator;  // any thread's
+  StatePrediction prediction;      // any thread's
   std::function<Packetizer(const PacketizerCounters& so_far)> new_packetizer;
   Packetizer packetizer;
-  std::optional<Measurement> begins_time;  // held back until the packets of the time before are done
-  PacketOdometry packet_odometry;
+  std::optional<Measurement> begins_epoch;  // held back until the packets of the time before are done
   bool finished = false;
+  StageTimings timings;
+  Localization localization;
+  Vision vision;
 };
 
 std::optional<Packet> Odometry::Impl::next_packet() {
-  const auto timer = packet_odometry.timings().measure_often("packetize");
+  const auto timer = timings.measure_often("packetize");
   while (true) {
     if (std::optional<Packet> packet = packetizer.next()) return packet;
-    if (begins_time) {
+    if (begins_epoch) {
       packetizer = new_packetizer(packetizer.counters());
-      packet_odometry.begin_time();
-      packetizer.add(*std::exchange(begins_time, std::nullopt));
-    } else if (std::optional<Intake::Item> item = intake.next(); item && item->begins_time) {
+      localization.begin_epoch();
+      vision.begin_epoch();
+      packetizer.add(*std::exchange(begins_epoch, std::nullopt));
+    } else if (std::optional<MeasurementValidator::Item> item = validator.next(); item && item->begins_epoch) {
       packetizer.finish();
-      begins_time = std::move(item->measurement);
+      begins_epoch = std::move(item->measurement);
     } else if (item) {
       packetizer.add(std::move(item->measurement));
-    } else if (!finished && intake.ended()) {
+    } else if (!finished && validator.ended()) {
       packetizer.finish();
       finished = true;
     } else {
       return std::nullopt;
     }
   }
+}
+
+/// The paper's data flow, packet by packet.
+Step Odometry::Impl::process(Packet packet) {
+  EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
+  const auto timer = timings.measure("process");
+  Preintegration motion = localization.predict(packet.imu);
+  const VisionOutput seen = vision.process({packet, localization.body(), motion.gyro_trusted()});
+  LocalizationOutput localized = localization.process(std::move(motion), seen, std::move(packet.external));
+  vision.correct(localized.correction, localization.body());
+  localized.step.cameras = vision.describe(std::move(packet), seen);
+  return std::move(localized.step);
 }
 
 Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,
@@ -66,38 +85,33 @@ Odometry& Odometry::operator=(Odometry&& other) noexcept = default;
 void Odometry::add(Measurement measurement) {
   // The prediction first: a step may end at the sample as soon as the intake has it.
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) impl_->prediction.add(*sample);
-  impl_->intake.add(std::move(measurement));
+  impl_->validator.add(std::move(measurement));
 }
 
-void Odometry::finish() { impl_->intake.finish(); }
+void Odometry::finish() { impl_->validator.finish(); }
 
 std::optional<Step> Odometry::next() {
   std::optional<Packet> packet = impl_->next_packet();
   if (!packet) return std::nullopt;
-  PacketOdometry& packet_odometry = impl_->packet_odometry;
-  const auto timer = packet_odometry.timings().measure("process");
-  Step step = packet_odometry.process(std::move(*packet));
+  Step step = impl_->process(std::move(*packet));
   impl_->prediction.correct(is_tracking(step.status) ? std::optional(step.state) : std::nullopt);
   return step;
 }
 
 std::optional<NavState> Odometry::newest_state() const { return impl_->prediction.newest(); }
 std::optional<NavState> Odometry::state_at(Timestamp t) const { return impl_->prediction.at(t); }
-void Odometry::load_map(std::string_view bytes) { impl_->packet_odometry.localization().load_map(bytes); }
-bool Odometry::awaiting_relocalization() const {
-  return impl_->packet_odometry.localization().awaiting_relocalization();
-}
-std::optional<std::string> Odometry::save_map() const { return impl_->packet_odometry.localization().save_map(); }
-FinalTrajectory Odometry::final_trajectory() const { return impl_->packet_odometry.localization().final_trajectory(); }
-Rig Odometry::rig() const { return impl_->packet_odometry.localization().rig(); }
+void Odometry::load_map(std::string_view bytes) { impl_->localization.load_map(bytes); }
+bool Odometry::awaiting_relocalization() const { return impl_->localization.awaiting_relocalization(); }
+std::optional<std::string> Odometry::save_map() const { return impl_->localization.save_map(); }
+FinalTrajectory Odometry::final_trajectory() const { return impl_->localization.final_trajectory(); }
+Rig Odometry::rig() const { return impl_->localization.rig(); }
 std::optional<CalibrationCovariance> Odometry::calibration_covariance(const std::string& camera) const {
-  return impl_->packet_odometry.localization().calibration_covariance(camera);
+  return impl_->localization.calibration_covariance(camera);
 }
 OdometryCounters Odometry::counters() const {
-  return {impl_->intake.counters(), impl_->packetizer.counters(),
-          impl_->packet_odometry.localization().external_counters()};
+  return {impl_->validator.counters(), impl_->packetizer.counters(), impl_->localization.external_counters()};
 }
-const StageTimings& Odometry::timings() const { return impl_->packet_odometry.timings(); }
+const StageTimings& Odometry::timings() const { return impl_->timings; }
 
 void drive(Odometry& odometry, const std::function<std::optional<Measurement>()>& source,
            const std::function<bool(Step)>& observe) {

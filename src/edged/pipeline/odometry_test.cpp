@@ -9,9 +9,10 @@
 
 #include "edged/core/check.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
+#include "edged/pipeline/localization/localization.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/odometry_test_support.hpp"
-#include "edged/pipeline/packet_odometry.hpp"
+#include "edged/pipeline/vision/vision.hpp"
 
 namespace edged {
 namespace {
@@ -23,10 +24,19 @@ TEST(Odometry, GivesTheBitsOfItsPartsInEveryMode) {
   for (const Mode mode : {Mode::Events, Mode::Frames, Mode::Fused}) {
     const Rig used = used_cameras(small_rig(), mode);
     Packetizer packetizer(used, {});
-    PacketOdometry parts(used, {}, {}, Inference::Synchronous);
+    StageTimings timings;
+    Localization localization(used, {}, {}, timings);
+    Vision vision(without_offsets(used), {}, Inference::Synchronous, timings);
     Numbers steps;
     const auto process = [&] {
-      while (auto packet = packetizer.next()) steps.push_back(numbers_of(parts.process(std::move(*packet))));
+      while (auto packet = packetizer.next()) {
+        Preintegration motion = localization.predict(packet->imu);
+        const VisionOutput seen = vision.process({*packet, localization.body(), motion.gyro_trusted()});
+        LocalizationOutput localized = localization.process(std::move(motion), seen);
+        vision.correct(localized.correction, localization.body());
+        localized.step.cameras = vision.describe(std::move(*packet), seen);
+        steps.push_back(numbers_of(localized.step));
+      }
     };
     for (const Measurement& m : all) packetizer.add(m), process();
     packetizer.finish();

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
-#include "edged/pipeline/renamed_options.hpp"
 
 namespace edged {
 namespace {
@@ -75,18 +74,16 @@ void AlignmentConfig::visit(ConfigFields& fields) {
              {"", 0, 1,
               "Weight of the newest event frame in the running mean of (measured - predicted) displacement (delta "
               "x_last of Eq. 2). 0: off."});
-  fields.add("max_px", max_px, {"px", 0, 50, "Upper bound of that mean."});
 }
 
 OdometryConfig::OdometryConfig() {
   event_tracker.sigma_px = 1.5;      // the appearance of an event frame changes with the direction of motion,
   event_tracker.klt.window_px = 15;  // and in the dark, and in fast motion, it is noisy
-  event_tracker.templates.patch.min_similarity = 0.7;
+  event_tracker.reference_patches.patch.min_similarity = 0.7;
 }
 
 void OdometryConfig::visit(ConfigFields& fields) {
   fields.expert_but(kForEveryone, [&] { declare(fields); });
-  fields.accept(kRenamedOptions);
 }
 
 void OdometryConfig::declare(ConfigFields& fields) {
@@ -111,14 +108,6 @@ void OdometryConfig::declare(ConfigFields& fields) {
   fields.group("estimator", estimator);
   fields.group("map", map);
   fields.group("status", status);
-  fields.add("quiet_rate_per_pixel", quiet_rate_per_pixel,
-             {"1/s", 0, 1000, "The scene is static below this event rate per pixel."});
-  fields.add("max_travel_px", max_travel_px,
-             {"px", 0.5, 1000, "An event frame covers at most this image motion by translation."});
-  fields.add("thin_width_px", thin_width_px,
-             {"px", 1, 1e6,
-              "While frames have enough features, event frames use each n-th event, with n = sensor width / this, "
-              "rounded down."});
   fields.add("min_events_per_pixel", min_events_per_pixel,
              {"", 0, 10, "A packet with fewer events per pixel makes no event frame."});
 }

@@ -54,23 +54,6 @@ TEST(OdometryConfig, HasTrackerOptionsPerKindWhereDefaultsDiffer) {
   }
 }
 
-TEST(OdometryConfig, AcceptsTheKeysOfTheVersionBefore) {
-  OdometryConfig config;
-  ConfigFields fields = ConfigFields::of(config);
-  fields.set("alignment_gain=0.5");
-  fields.set("event_tracker.klt.window_px=21");
-  fields.set("expert.frame_tracker.detector.cell_px=30");
-  fields.set("expert.depth_factor.scale_sigma=0.25");
-  fields.set("expert.event_tracker.klt.epsilon_px=0.1");  // a constant now: ignored
-  EXPECT_EQ(config.alignment.gain, 0.5);
-  EXPECT_EQ(config.event_tracker.klt.window_px, 21);
-  EXPECT_EQ(config.frame_tracker.klt.window_px, OdometryConfig().frame_tracker.klt.window_px);
-  EXPECT_EQ(config.event_tracker.detector.cell_px, 30.0);
-  EXPECT_EQ(config.frame_tracker.detector.cell_px, 30.0);
-  EXPECT_EQ(config.estimator.depth_factor.scale_sigma, 0.25);
-  EXPECT_THROW(fields.set("event_tracker.klt.nothing=1"), InputError);
-}
-
 TEST(OdometryConfig, RefusesAnEnhancementThatNothingUses) {
   OdometryConfig config;
   ConfigFields fields = ConfigFields::of(config);

@@ -269,26 +269,9 @@ void ConfigFields::add_choice(std::string_view name, const std::vector<std::stri
       });
 }
 
-bool ConfigFields::set_known(const std::string& key, const std::string& value) {
-  const auto field = std::ranges::find(fields_, key, &ConfigField::key);
-  if (field != fields_.end()) field->set(value);
-  return field != fields_.end();
-}
-
 void ConfigFields::set(const std::string& key, const std::string& value) {
-  if (set_known(key, value)) return;
-  for (const Renamed& renamed : renamed_) {
-    const bool group = renamed.before.ends_with('.');
-    if (group ? !key.starts_with(renamed.before) : key != renamed.before) continue;
-    if (renamed.now.empty()) {
-      spdlog::warn(fmt::format("option '{}' has become a constant and is ignored; remove it", key));
-      return;
-    }
-    const std::string now = std::string(renamed.now) + key.substr(renamed.before.size());
-    if (!set_known(now, value)) continue;
-    spdlog::warn(fmt::format("option '{}' is called '{}' now; the next version refuses the old name", key, now));
-    return;
-  }
+  const auto known = std::ranges::find(fields_, key, &ConfigField::key);
+  if (known != fields_.end()) return known->set(value);
   std::vector<std::string> keys;
   for (const ConfigField& field : fields_) keys.push_back(field.key);
   throw InputError::format(

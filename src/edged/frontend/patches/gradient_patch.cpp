@@ -6,38 +6,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/frontend/tuning.hpp"
+
 namespace edged {
 namespace {
 
-constexpr float kNone = 128.0F;             // grey level of no increment
-constexpr double kNoise_px2 = 0.3;          // squared motion that shows as much scene as noise
-constexpr double kLeastShare = 0.5;         // of a motion, that the motions so far must explain
-constexpr double kLeastSimilarity = 0.8;    // with what is expected
-constexpr double kFarthestCorner_px = 1.0;  // from the expected place: farther away it is another corner
+constexpr float kNone = 128.0F;  // grey level of no increment
 
-/// Events of an edge appear this far behind it along its motion, as a pixel fires once its brightness has changed by
-/// the threshold.
-constexpr double kBehind_px = 0.3;
-
-Eigen::Vector2d behind(const Eigen::Vector2d& moved) { return kBehind_px / std::max(moved.norm(), 0.3) * moved; }
+/// How far the events of an edge are behind it along its motion.
+Eigen::Vector2d behind(const Eigen::Vector2d& moved) {
+  return kFrontendTuning.event_lag_px / std::max(moved.norm(), 0.3) * moved;
+}
 
 }  // namespace
 
-GradientPatch::GradientPatch(const BrightnessIncrements& seen, const Eigen::Vector2d& corner)
-    : first_(seen.image.empty() ? std::nullopt : cut_patch(seen.image, {corner})) {}
+GradientPatch::GradientPatch(const BrightnessIncrements& seen, const Eigen::Vector2d& feature)
+    : first_(seen.image.empty() ? std::nullopt : cut_patch(seen.image, {feature})) {}
 
 std::optional<Eigen::Vector2d> GradientPatch::align(const BrightnessIncrements& seen, const PatchPlace& place,
                                                     const Eigen::Vector2d& moved, const PatchConfig& config) const {
   const Eigen::Vector2d of_patch = seen.share * (place.A.inverse() * moved);
   if (!spans(of_patch)) return std::nullopt;
   PatchConfig strict = config;
-  strict.min_similarity = kLeastSimilarity;
+  strict.min_similarity = PatchConfig().min_similarity;
   const Eigen::Vector2d ahead = behind(moved) - place.A * behind_;
   const std::optional<PatchMatch> match =
       match_patch(expected(of_patch), seen.image, place.pixel - ahead, place.A, 0.0, strict);
   if (!match) return std::nullopt;
-  const Eigen::Vector2d corner = match->pixel + ahead;
-  return (corner - place.pixel).norm() < kFarthestCorner_px ? std::optional(corner) : std::nullopt;
+  const Eigen::Vector2d feature = match->pixel + ahead;
+  return (feature - place.pixel).norm() < kFrontendTuning.max_feature_shift_px ? std::optional(feature) : std::nullopt;
 }
 
 void GradientPatch::learn(const BrightnessIncrements& seen, const PatchPlace& place, const Eigen::Vector2d& moved,
@@ -60,11 +57,11 @@ void GradientPatch::add(const Patch& increments, const Eigen::Vector2d& moved) {
 }
 
 Eigen::Vector2d GradientPatch::weights(const Eigen::Vector2d& moved) const {
-  return (squares_ + kNoise_px2 * Eigen::Matrix2d::Identity()).inverse() * moved;
+  return (squares_ + kFrontendTuning.gradient_noise_px2 * Eigen::Matrix2d::Identity()).inverse() * moved;
 }
 
 bool GradientPatch::spans(const Eigen::Vector2d& moved) const {
-  return weights(moved).dot(squares_ * moved) > kLeastShare * moved.squaredNorm();
+  return weights(moved).dot(squares_ * moved) > kFrontendTuning.min_explained_share * moved.squaredNorm();
 }
 
 // To first order an increment is the gradient of the log brightness times the negative motion (Gehrig et al., EKLT:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The reference patch of a corner on event frames. What an event frame shows depends on the motion: edges along it are
+// The reference patch of a feature on event frames. What an event frame shows depends on the motion: edges along it are
 // missing. The gradient of the brightness does not depend on it, and tells what any motion would show.
 #pragma once
 
@@ -21,10 +21,10 @@ struct BrightnessIncrements {
 class GradientPatch {
  public:
   GradientPatch() = default;
-  /// From the image of a corner whose motion is not known yet: it is taken to be that of the next one.
-  GradientPatch(const BrightnessIncrements& seen, const Eigen::Vector2d& corner);
+  /// From the image of a feature whose motion is not known yet: it is taken to be that of the next one.
+  GradientPatch(const BrightnessIncrements& seen, const Eigen::Vector2d& feature);
 
-  /// Where the newest image shows the corner, independent of contrast; nothing if that is not near, or if no motion so
+  /// Where the newest image shows the feature, independent of contrast; nothing if that is not near, or if no motion so
   /// far was in this direction. place: of the patch in the image, as expected; moved: since the image before [px].
   std::optional<Eigen::Vector2d> align(const BrightnessIncrements& seen, const PatchPlace& place,
                                        const Eigen::Vector2d& moved, const PatchConfig& config) const;
@@ -36,7 +36,7 @@ class GradientPatch {
   static constexpr int kPixels = Patch::kSize * Patch::kSize;
 
   void add(const Patch& increments, const Eigen::Vector2d& moved);
-  /// Of products_, for a motion.
+  /// Weights of products_ for a motion.
   Eigen::Vector2d weights(const Eigen::Vector2d& moved) const;
   bool spans(const Eigen::Vector2d& moved) const;
   /// What the motion would show, with full contrast.
@@ -47,7 +47,7 @@ class GradientPatch {
   Eigen::Matrix2d squares_ = Eigen::Matrix2d::Zero();
   Eigen::Matrix<float, 2, kPixels> products_ = Eigen::Matrix<float, 2, kPixels>::Zero();
   std::optional<Patch> first_;                        // of the first image, until the next one
-  Eigen::Vector2d behind_ = Eigen::Vector2d::Zero();  // how far the events of the first image were behind the corner
+  Eigen::Vector2d behind_ = Eigen::Vector2d::Zero();  // how far the events of the first image were behind the feature
 };
 
 }  // namespace edged

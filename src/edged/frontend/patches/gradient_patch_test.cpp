@@ -30,7 +30,7 @@ BrightnessIncrements increments(const Eigen::Vector2d& middle, const Eigen::Vect
   return {image, 1.0};
 }
 
-/// Where events of an edge are seen when the corner is at `pixel`: 0.3 px behind it.
+/// Where events of an edge are seen when the feature is at `pixel`: 0.3 px behind it.
 Eigen::Vector2d seen_at(const Eigen::Vector2d& pixel, const Eigen::Vector2d& moved) {
   return pixel - 0.3 * moved.normalized();
 }

@@ -44,13 +44,13 @@ bool normalise(Samples& samples) {
 }
 
 /// The normalized patch and its derivative with respect to its position.
-struct Template {
+struct NormalizedPatch {
   Samples grey;
   Eigen::Matrix<float, kSamples, 2> gradient;
 };
 
-std::optional<Template> template_of(const Patch& patch) {
-  Template made;
+std::optional<NormalizedPatch> normalized(const Patch& patch) {
+  NormalizedPatch made;
   const auto at = [&](int x, int y) { return static_cast<float>(patch.pixels[y * Patch::kSize + x]); };
   for (int y = 0, i = 0; y < kInner; ++y) {
     for (int x = 0; x < kInner; ++x, ++i) {
@@ -85,10 +85,10 @@ bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Ma
     x[i] = static_cast<int>(place_x), y[i] = static_cast<int>(place_y);
     fx[i] = place_x - static_cast<float>(x[i]), fy[i] = place_y - static_cast<float>(y[i]);
   }
-  const std::uint8_t* corner = image.ptr(top) + left;
+  const std::uint8_t* feature = image.ptr(top) + left;
   const auto row = static_cast<std::ptrdiff_t>(image.step[0]);
   for (int i = 0; i < kSamples; ++i) {
-    const std::uint8_t* upper = corner + y[i] * row + x[i];
+    const std::uint8_t* upper = feature + y[i] * row + x[i];
     upper_left[i] = upper[0], upper_right[i] = upper[1];
     lower_left[i] = upper[row], lower_right[i] = upper[row + 1];
   }
@@ -101,8 +101,8 @@ bool sample(const cv::Mat& image, const Eigen::Vector2d& middle, const Eigen::Ma
 }
 
 /// The integer pixel within the radius with the best correlation.
-std::optional<Eigen::Vector2d> search(const Template& wanted, const cv::Mat& image, const Eigen::Vector2d& expected,
-                                      const Eigen::Matrix2d& A, double radius_px) {
+std::optional<Eigen::Vector2d> search(const NormalizedPatch& wanted, const cv::Mat& image,
+                                      const Eigen::Vector2d& expected, const Eigen::Matrix2d& A, double radius_px) {
   const int reach = static_cast<int>(std::ceil(radius_px));
   std::optional<Eigen::Vector2d> best;
   float most = 0.0F;
@@ -145,7 +145,7 @@ std::optional<Patch> cut_patch(const cv::Mat& image, const PatchPlace& place) {
 
 std::vector<double> correlations(const Patch& patch, const cv::Mat& image, std::span<const PatchPlace> places) {
   std::vector<double> found(places.size(), -1.0);
-  const std::optional<Template> wanted = template_of(patch);
+  const std::optional<NormalizedPatch> wanted = normalized(patch);
   if (!wanted) return found;
   Samples seen;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -156,8 +156,9 @@ std::vector<double> correlations(const Patch& patch, const cv::Mat& image, std::
 
 std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, const Eigen::Vector2d& expected,
                                       const Eigen::Matrix2d& A, double radius_px, const PatchConfig& config) {
+  constexpr int kIterations = 10;
   constexpr double kConverged_px = 0.02, kFarthest_px = 2.0;
-  const std::optional<Template> wanted = template_of(patch);
+  const std::optional<NormalizedPatch> wanted = normalized(patch);
   if (!wanted) return std::nullopt;
   const std::optional<Eigen::Vector2d> nearest = search(*wanted, image, expected, A, radius_px);
   if (!nearest) return std::nullopt;
@@ -166,7 +167,7 @@ std::optional<PatchMatch> match_patch(const Patch& patch, const cv::Mat& image, 
   const Eigen::Matrix2d H_inverse = H.cast<double>().inverse();
   PatchMatch match{*nearest, 0.0};
   Samples seen;
-  for (int i = 0; i < config.iterations; ++i) {
+  for (int i = 0; i < kIterations; ++i) {
     if (!sample(image, match.pixel, A, seen)) return std::nullopt;
     const Eigen::Vector2d wrong = (wanted->gradient.transpose() * (seen - wanted->grey)).cast<double>();
     const Eigen::Vector2d step = A * (H_inverse * wrong);

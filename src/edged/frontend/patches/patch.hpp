@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The reference patch of a corner, and its alignment to later images.
+// The reference patch of a feature, and its alignment to later images.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +15,12 @@
 
 namespace edged {
 
-/// Grey levels around a corner, row by row; the corner lies in the middle, between pixels.
+/// Grey levels around a feature, row by row; the feature lies in the middle, between pixels.
 struct Patch {
   static constexpr int kSize = 14;
   std::array<std::uint8_t, kSize * kSize> pixels{};
 
-  /// One of the four pixels around the corner.
+  /// One of the four pixels around the feature.
   std::uint8_t middle() const { return pixels[(kSize / 2) * kSize + kSize / 2]; }
 };
 

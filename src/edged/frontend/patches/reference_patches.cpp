@@ -4,19 +4,14 @@
 
 #include <utility>
 
+#include "edged/frontend/tuning.hpp"
+
 namespace edged {
-namespace {
-
-constexpr double kFarthestFromFlow_px = 1.0;  // from the result of the optical flow: farther away it is another corner
-constexpr double kMinDepth_m = 0.05;
-
-}  // namespace
-
-void Templates::move(const SE3& T_cur_prev) {
+void ReferencePatches::move(const SE3& T_cur_prev) {
   for (auto& [id, reference] : references_) reference.T_cur_ref = T_cur_prev * reference.T_cur_ref;
 }
 
-void Templates::take(const PatchView& view, std::span<const Track> tracks) {
+void ReferencePatches::extract(const PatchView& view, std::span<const Track> tracks) {
   std::map<FeatureId, Reference> references;
   for (const Track& track : tracks) {
     const auto known = references_.find(track.id);
@@ -30,38 +25,40 @@ void Templates::take(const PatchView& view, std::span<const Track> tracks) {
   references_ = std::move(references);
 }
 
-/// The patch as the camera sees it now, with the corner where it is.
-std::optional<PatchPlace> Templates::place_of(const Reference& reference, const CornerMotion& corner) const {
-  const double depth = (reference.T_cur_ref.inverse() * corner.p_C).z();
-  if (!(depth > kMinDepth_m)) return std::nullopt;
+/// The patch as the camera sees it now, with the feature where it is.
+std::optional<PatchPlace> ReferencePatches::place_of(const Reference& reference, const FeatureMotion& feature) const {
+  const double depth = (reference.T_cur_ref.inverse() * feature.p_C).z();
+  if (!(depth > kFrontendTuning.min_depth_m)) return std::nullopt;
   std::optional<PatchPlace> place = reference.outline.seen_by(camera_, reference.T_cur_ref, depth);
-  if (place) place->pixel = corner.pixel;
+  if (place) place->pixel = feature.pixel;
   return place;
 }
 
-std::optional<Eigen::Vector2d> Templates::align(FeatureId id, const PatchView& view, const CornerMotion& corner) const {
+std::optional<Eigen::Vector2d> ReferencePatches::align(FeatureId id, const PatchView& view,
+                                                       const FeatureMotion& feature) const {
   const auto known = references_.find(id);
   if (known == references_.end()) return std::nullopt;
   const Reference& reference = known->second;
-  const std::optional<PatchPlace> place = place_of(reference, corner);
+  const std::optional<PatchPlace> place = place_of(reference, feature);
   if (!place) return std::nullopt;
   if (!view.increments.image.empty()) {
-    if (const auto aligned = reference.gradient.align(view.increments, *place, corner.moved, config_)) return aligned;
+    if (const auto aligned = reference.gradient.align(view.increments, *place, feature.moved, config_)) return aligned;
   }
   const std::optional<PatchMatch> match =
-      match_patch(reference.patch, view.image, corner.pixel, place->A, 0.0, config_);
-  const bool near = match && (match->pixel - corner.pixel).norm() < kFarthestFromFlow_px;
+      match_patch(reference.patch, view.image, feature.pixel, place->A, 0.0, config_);
+  const bool near = match && (match->pixel - feature.pixel).norm() < kFrontendTuning.max_feature_shift_px;
   return near ? std::optional(match->pixel) : std::nullopt;
 }
 
-void Templates::learn(FeatureId id, const PatchView& view, const CornerMotion& corner, bool confirmed) {
+void ReferencePatches::update_gradient(FeatureId id, const PatchView& view, const FeatureMotion& feature,
+                                       bool confirmed) {
   const auto known = references_.find(id);
   if (known == references_.end() || view.increments.image.empty()) return;
-  const std::optional<PatchPlace> place = place_of(known->second, corner);
-  if (place) known->second.gradient.learn(view.increments, *place, corner.moved, confirmed);
+  const std::optional<PatchPlace> place = place_of(known->second, feature);
+  if (place) known->second.gradient.learn(view.increments, *place, feature.moved, confirmed);
 }
 
-void Templates::note(FeatureId id, bool fits) {
+void ReferencePatches::set_fits(FeatureId id, bool fits) {
   const auto known = references_.find(id);
   if (known != references_.end()) known->second.fits = fits;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The reference patches of corners. The drift of optical flow accumulates from image to image. Alignment to the
+// The reference patches of features. The drift of optical flow accumulates from image to image. Alignment to the
 // reference patch, warped by the motion of the camera since, removes it.
 #pragma once
 
@@ -21,33 +21,33 @@ namespace edged {
 /// What the reference patches are compared with.
 struct PatchView {
   cv::Mat image;                    ///< CV_8UC1
-  BrightnessIncrements increments;  ///< of an event frame
+  BrightnessIncrements increments;  ///< on event frames only
 };
 
-/// Where a corner is, and where it was expected.
-struct CornerMotion {
+/// Where a feature is, and where it was expected.
+struct FeatureMotion {
   Eigen::Vector2d pixel;
   Eigen::Vector2d moved;  ///< since the image before [px]
   Eigen::Vector3d p_C;    ///< expected position in the camera [m]; its neighbourhood is assumed at the same depth
 };
 
-class Templates {
+class ReferencePatches {
  public:
-  Templates(const CameraModel& camera, const PatchConfig& config) : camera_(camera), config_(config) {}
+  ReferencePatches(const CameraModel& camera, const PatchConfig& config) : camera_(camera), config_(config) {}
 
   /// Moves on to the next image. T_cur_prev: camera at the image before to camera now.
   void move(const SE3& T_cur_prev);
-  /// Takes reference patches from the newest image for tracks without one or whose patch no longer matches; drops those
-  /// of ended tracks.
-  void take(const PatchView& view, std::span<const Track> tracks);
-  /// The position near that of the corner where the newest image matches the reference patch, independent of gain and
+  /// Extracts reference patches from the newest image for tracks without one or whose patch no longer matches; drops
+  /// those of ended tracks.
+  void extract(const PatchView& view, std::span<const Track> tracks);
+  /// The position near that of the feature where the newest image matches the reference patch, independent of gain and
   /// offset; nothing without a reference patch or a match. On event frames the gradient patch comes first, which no
   /// change of direction spoils.
-  std::optional<Eigen::Vector2d> align(FeatureId id, const PatchView& view, const CornerMotion& corner) const;
-  /// The gradient patch learns from the newest image, where the corner has been found. confirmed: by align.
-  void learn(FeatureId id, const PatchView& view, const CornerMotion& corner, bool confirmed);
-  /// Whether the newest image matches the reference patch.
-  void note(FeatureId id, bool fits);
+  std::optional<Eigen::Vector2d> align(FeatureId id, const PatchView& view, const FeatureMotion& feature) const;
+  /// The gradient patch learns from the newest image, where the feature has been found. confirmed: by align.
+  void update_gradient(FeatureId id, const PatchView& view, const FeatureMotion& feature, bool confirmed);
+  /// Says whether the newest image matches the reference patch.
+  void set_fits(FeatureId id, bool fits);
   void clear() { references_.clear(); }
   bool empty() const { return references_.empty(); }
 
@@ -57,9 +57,9 @@ class Templates {
     SE3 T_cur_ref;  ///< camera at the reference patch to camera now
     PatchOutline outline;
     GradientPatch gradient;
-    bool fits = true;  ///< at the last call of match
+    bool fits = true;  ///< as of the last set_fits
   };
-  std::optional<PatchPlace> place_of(const Reference& reference, const CornerMotion& corner) const;
+  std::optional<PatchPlace> place_of(const Reference& reference, const FeatureMotion& feature) const;
 
   CameraModel camera_;
   PatchConfig config_;

@@ -11,18 +11,18 @@
 #include <opencv2/features2d.hpp>
 #include <random>
 
+#include "edged/map/tuning.hpp"
+
 namespace edged {
 namespace {
 
 constexpr int kPairs = 300;  // pairs: with 20 % inliers all but 5e-6 of the runs draw a pair of inliers
 constexpr int kRefinements = 5;
-constexpr double kLeastHeight = 0.05;   // slope of a ray against the horizon, to derive a distance from a height
-constexpr double kLeastUpright = 0.42;  // sine of 25 deg, of a ray against gravity
 
 /// Direction of `up` in the image at that point of the unit plane [deg]; nothing if the ray is nearly vertical.
 std::optional<float> upright_deg(const Eigen::Vector2d& point, const Eigen::Vector3d& up_C) {
   const Eigen::Vector3d ray(point.x(), point.y(), 1.0);
-  if (ray.cross(up_C).norm() < kLeastUpright * ray.norm()) return std::nullopt;
+  if (ray.cross(up_C).norm() < kMapTuning.min_upright * ray.norm()) return std::nullopt;
   const Eigen::Vector2d direction = up_C.head<2>() - point * up_C.z();
   const double deg = std::atan2(direction.y(), direction.x()) * 180.0 / std::numbers::pi;
   return static_cast<float>(deg < 0.0 ? deg + 360.0 : deg);
@@ -34,7 +34,7 @@ std::vector<SE3> poses_of(const PlaceMatch& a, const PlaceMatch& b, const Eigen:
   Eigen::Vector3d f1 = R_O_C * a.point.homogeneous(), f2 = R_O_C * b.point.homogeneous();
   Eigen::Vector3d p1 = a.p_M, p2 = b.p_M;
   if (std::abs(f1.z()) < std::abs(f2.z())) std::swap(f1, f2), std::swap(p1, p2);
-  if (std::abs(f1.z()) < kLeastHeight) return {};
+  if (std::abs(f1.z()) < kMapTuning.min_ray_slope) return {};
   const Eigen::Vector3d d = p1 - p2;
   const Eigen::Vector2d along = f1.head<2>() * (f2.z() / f1.z()) - f2.head<2>(),
                         start = f1.head<2>() * (d.z() / f1.z());

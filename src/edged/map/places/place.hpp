@@ -29,13 +29,13 @@ std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<
 
 /// A feature of the present image that matches a map point by its descriptor.
 struct PlaceMatch {
-  Eigen::Vector2d point;  ///< of the feature, on the unit plane
+  Eigen::Vector2d point;  ///< the feature's, on the unit plane
   Eigen::Vector3d p_M;
 };
 
 struct PlacePose {
   SE3 T_M_C;
-  std::size_t agreeing;  ///< of the matches
+  std::size_t agreeing;  ///< number of matches
 };
 
 /// Whether a camera there sees the point within max_error on the unit plane.

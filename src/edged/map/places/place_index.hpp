@@ -15,7 +15,7 @@
 
 namespace edged {
 
-/// Of the views of one camera.
+/// The index of the views of one camera.
 class PlaceIndex {
  public:
   PlaceIndex() : tables_(kTables * kBuckets) {}

@@ -47,7 +47,7 @@ struct Street {
   }
 
   /// By comparison with all points: the keyframe that has most that are alike.
-  std::size_t most_alike(const std::vector<std::optional<Descriptor>>& image) const {
+  std::size_t match_descriptors(const std::vector<std::optional<Descriptor>>& image) const {
     std::vector<std::ptrdiff_t> alike;
     for (const std::vector<Descriptor>& points : keyframes) {
       alike.push_back(std::ranges::count_if(image, [&](const std::optional<Descriptor>& d) {
@@ -68,7 +68,7 @@ TEST(PlaceIndex, FindsTheKeyframeThatComparisonWithAllFinds) {
   for (std::size_t keyframe = 3; keyframe < kKeyframesOfIndex; keyframe += 19) {
     for (const int bits : {15, 30}) {
       const auto image = street.image_of(keyframe, bits, random);
-      EXPECT_EQ(street.most_alike(image), keyframe);
+      EXPECT_EQ(street.match_descriptors(image), keyframe);
       EXPECT_EQ(street.most_votes(image), keyframe) << bits;
     }
   }

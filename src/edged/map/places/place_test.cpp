@@ -29,35 +29,35 @@ Scene scene(std::uint64_t seed, int right, int wrong) {
   const Eigen::Vector3d position = 2.0 * any();
   const Eigen::Quaterniond tilt = so3::exp(0.3 * any());
   const Eigen::Quaterniond heading = so3::exp({0.0, 0.0, 3.0 * unit(random)});
-  Scene made{SE3(heading * tilt * forward, position), {}};
+  Scene created{SE3(heading * tilt * forward, position), {}};
   for (int i = 0; i < right + wrong; ++i) {
     const double y = 0.4 * unit(random), x = 0.5 * unit(random);
     const Eigen::Vector2d point(x, y);
-    const Eigen::Vector3d p_M = made.T_M_C * ((2.5 + unit(random)) * point.homogeneous());
+    const Eigen::Vector3d p_M = created.T_M_C * ((2.5 + unit(random)) * point.homogeneous());
     const double noise_y = 0.001 * unit(random), noise_x = 0.001 * unit(random);
-    made.matches.push_back(
+    created.matches.push_back(
         {point + Eigen::Vector2d(noise_x, noise_y), i < right ? p_M : Eigen::Vector3d(p_M + 2.0 * any())});
   }
-  return made;
+  return created;
 }
 
 TEST(PoseByGravity, IsFoundAmongManyWrongMatches) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Scene made = scene(seed, 20, 40);
+    const Scene created = scene(seed, 20, 40);
     // Of the attitude only the tilt is known: the heading of O is arbitrary.
-    const Eigen::Quaterniond R_O_C = so3::exp({0.0, 0.0, 0.37 * static_cast<double>(seed)}) * made.T_M_C.rotation();
-    const auto found = pose_by_gravity(made.matches, R_O_C, 0.015);
+    const Eigen::Quaterniond R_O_C = so3::exp({0.0, 0.0, 0.37 * static_cast<double>(seed)}) * created.T_M_C.rotation();
+    const auto found = pose_by_gravity(created.matches, R_O_C, 0.015);
     ASSERT_TRUE(found);
     EXPECT_GE(found->agreeing, 17U);
-    EXPECT_LT((found->T_M_C.translation() - made.T_M_C.translation()).norm(), 0.008) << "seed " << seed;
-    EXPECT_LT(so3::log(found->T_M_C.rotation().conjugate() * made.T_M_C.rotation()).norm(), 0.003);
+    EXPECT_LT((found->T_M_C.translation() - created.T_M_C.translation()).norm(), 0.008) << "seed " << seed;
+    EXPECT_LT(so3::log(found->T_M_C.rotation().conjugate() * created.T_M_C.rotation()).norm(), 0.003);
   }
 }
 
 TEST(PoseByGravity, AgreesWithFewWhereAllMatchesAreWrong) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Scene made = scene(seed, 0, 60);
-    const auto found = pose_by_gravity(made.matches, made.T_M_C.rotation(), 0.015);
+    const Scene created = scene(seed, 0, 60);
+    const auto found = pose_by_gravity(created.matches, created.T_M_C.rotation(), 0.015);
     EXPECT_TRUE(!found || found->agreeing < 9U) << "seed " << seed;
   }
 }

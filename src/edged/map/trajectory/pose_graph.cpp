@@ -9,10 +9,11 @@
 #include <optional>
 #include <utility>
 
+#include "edged/map/tuning.hpp"
+
 namespace edged {
 namespace {
 
-constexpr double kFarSigmas = 2.0;  // Cauchy's scale
 constexpr int kIterations = 12;
 constexpr int kTrusting = 3;  // of them without a robust loss: after a long drift, inliers have large residuals, too
 constexpr double kConverged = 1e-6;  // largest step of an iteration, metres and radians
@@ -118,7 +119,8 @@ void PoseGraph::take(const View& view, bool trusting, Equations& equations) cons
         linearised(observation, T_M_B_[view.body], T_M_B_[observation.keyframe], view.T_B_C[observation.camera]);
     if (!row) continue;
     const Eigen::Matrix2d information = row->R.inverse();
-    const double far = trusting ? 0.0 : row->r.dot(information * row->r) / (kFarSigmas * kFarSigmas);
+    const double far =
+        trusting ? 0.0 : row->r.dot(information * row->r) / (kMapTuning.cauchy_sigmas * kMapTuning.cauchy_sigmas);
     const Eigen::Matrix2d W = information / (1.0 + far);
     const Eigen::Matrix<double, 6, 2> body = row->by_body.transpose() * W, keyframe = row->by_keyframe.transpose() * W;
     equations.add(view.body, observation.keyframe, body * row->by_body, body * row->by_keyframe,

@@ -8,23 +8,19 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/map/trajectory/pose_graph.hpp"
+#include "edged/map/tuning.hpp"
 
 namespace edged {
 namespace {
 
-// Factor on the odometry's drift of the filter: matches on both sides bound it better than past ones alone.
-constexpr double kFinalDriftScale = 2.0;
-constexpr double kTiltAtStart_rad = 0.2 * kDegree;
 constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
-// Number of matched images that are optimized with the keyframes: each is coupled to the one before and to most
-// keyframes, so time and memory grow faster than their number.
-constexpr std::size_t kMostTogether = 500;
 
-/// Of the start of the odometry, relative to its last end.
+/// Covariance of the start of the odometry, relative to its last end.
 Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
+  constexpr double kTilt_rad = kMapTuning.start_tilt_deg * kDegree;
   Matrix6d P = Matrix6d::Zero();
   P.diagonal().head<3>().setConstant(position_sigma * position_sigma);
-  P.diagonal().tail<3>().setConstant(yaw_sigma * yaw_sigma + kTiltAtStart_rad * kTiltAtStart_rad);
+  P.diagonal().tail<3>().setConstant(yaw_sigma * yaw_sigma + kTilt_rad * kTilt_rad);
   return P;
 }
 
@@ -44,9 +40,9 @@ class TrajectorySmoother::Fit {
         together_(together),
         loaded_fixed_(record.loaded_fixed_),
         keyframes_(record.keyframes_) {
-    config_.drift_m *= kFinalDriftScale;
-    config_.drift_yaw_deg *= kFinalDriftScale;
-    config_.drift_tilt_deg *= kFinalDriftScale;
+    config_.drift_m *= kMapTuning.final_drift_factor;
+    config_.drift_yaw_deg *= kMapTuning.final_drift_factor;
+    config_.drift_tilt_deg *= kMapTuning.final_drift_factor;
     for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
     for (const Session& session : record.sessions_) add_session(session);
     for (const Session& session : record.sessions_)
@@ -195,7 +191,7 @@ TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map,
                                                   const std::optional<Closed>& closed) const {
   std::size_t views = 0;
   for (const Session& session : sessions_) views += session.views.size();
-  const std::size_t of = views / kMostTogether + 1;
+  const std::size_t of = views / kMapTuning.joint_images + 1;
   const Fit together(*this, odom_to_map, closed, of);
   const std::optional<Fit> chain =
       of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, closed, 1, &together) : std::nullopt;

@@ -154,7 +154,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   EXPECT_GT(error(causal_.back()), 0.5);
   T_M_O_ = O;
   observe(8.0, 0.5, keyframe);
-  odom_to_map_.forget_guess();
+  odom_to_map_.drop_dead_reckoning();
   fly(8.0, 8.5, 0.0);
   for (const StampedPose& pose : record_.path(odom_to_map_).poses)
     EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
@@ -170,7 +170,7 @@ TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   restart(5.0, own);
   fly(5.0, 8.0, 0.0);
   observe(8.0, 7.5, 1);
-  odom_to_map_.forget_guess();
+  odom_to_map_.drop_dead_reckoning();
   const TrajectorySmoother::Path path = record_.path(odom_to_map_);
   EXPECT_EQ(path.poses.size(), causal_.size());
   for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
@@ -185,7 +185,7 @@ TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
   fly(0.0, 1.0, 0.0);
   restart(2.0, own);
   fly(2.0, 3.0, 0.0);
-  odom_to_map_.move_before(own.inverse());
+  odom_to_map_.transform_earlier(own.inverse());
   const Trajectory moved = record_.path(odom_to_map_).poses;
   EXPECT_LT((moved.front().T.inverse() * own.inverse() * causal_.front().T).log().norm(), 1e-12);
   EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the map has corrected the present start";

@@ -23,7 +23,7 @@ class EventHistory {
   Duration offset() const { return offset_; }
   struct Dropped {
     std::size_t late = 0;     ///< not after the last cut, or before an earlier event
-    std::size_t flicker = 0;  ///< of lamps
+    std::size_t flicker = 0;  ///< caused by lamps
   };
   /// Adds events, converted from the camera clock to the IMU clock.
   Dropped add(const std::vector<Event>& events, Timestamp last_cut);

@@ -36,15 +36,15 @@ class ClockWatch {
 /// One damaged stamp costs one measurement. When a sensor's clock has been set back by more than a second and stays
 /// there, a new time begins. The decision takes half a second, whose measurements are late. After a step by less than a
 /// second measurements are late until the old time is reached again.
-class Intake {
+class MeasurementValidator {
  public:
   struct Item {
     Measurement measurement;
-    bool begins_time = false;  ///< a clock was set back: earlier measurements belong to another time
+    bool begins_epoch = false;  ///< a clock was set back: earlier measurements belong to another time
   };
 
   /// used: the cameras of the run, some of the rig's.
-  Intake(const Rig& rig, const Rig& used, const SensorDelays& delays);
+  MeasurementValidator(const Rig& rig, const Rig& used, const SensorDelays& delays);
 
   /// From any thread. Measurements of unused cameras are ignored.
   void add(Measurement measurement);
@@ -59,7 +59,7 @@ class Intake {
  private:
   template <typename T>
   struct Sensor {
-    std::string name = {};  ///< of the camera
+    std::string name = {};  ///< the camera's
     CameraModel model = {};
     JumpGate<T> gate{false};
     ClockWatch clock = {};
@@ -72,21 +72,21 @@ class Intake {
   void accept(const ImuSample& sample);
   void accept(const ExternalSample& sample);
   void remove_invalid(std::vector<Event>& events, const CameraModel& camera);
-  bool admit(Frame& frame, const CameraModel& camera);
-  bool admit(const ImuSample& sample);
+  bool is_valid(Frame& frame, const CameraModel& camera);
+  bool is_valid(const ImuSample& sample);
   template <typename T>
-  void judge(Sensor<T>& sensor, T item);
-  void take(Measurement measurement, ClockWatch& clock);
-  void pass_on(Measurement measurement);
+  void validate(Sensor<T>& sensor, T item);
+  void release(Measurement measurement, ClockWatch& clock);
+  void forward(Measurement measurement);
   template <typename Give>
   void for_each_gate(const Give& give);
-  void begin_time();
+  void begin_epoch();
 
   Rig used_;
   SensorDelays delays_;
   std::vector<std::pair<std::string, Modality>> known_;  // all cameras of the rig
   mutable std::mutex mutex_;                             // guards the members below
-  std::deque<Sequencer> times_;        // the last one receives; those before it are finished but not yet read out
+  std::deque<Sequencer> epochs_;       // the last one receives; those before it are finished but not yet read out
   bool begins_time_ = false;           // of the next measurement from the first one
   std::vector<Sensor<Event>> events_;  // one per used camera
   std::vector<Sensor<Frame>> frames_;

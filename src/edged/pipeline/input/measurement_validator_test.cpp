@@ -30,10 +30,10 @@ struct Received {
   std::size_t events = 0, frames = 0, samples = 0;
   std::vector<Timestamp> stamps, begins;
 
-  void take(Intake& intake) {
-    while (const auto item = intake.next()) {
+  void release(MeasurementValidator& validator) {
+    while (const auto item = validator.next()) {
       const Measurement& m = item->measurement;
-      if (item->begins_time) begins.push_back(*first_stamp(m));
+      if (item->begins_epoch) begins.push_back(*first_stamp(m));
       stamps.push_back(*first_stamp(m));
       if (const auto* batch = std::get_if<EventBatch>(&m)) events += batch->events.size();
       frames += std::holds_alternative<Frame>(m);
@@ -43,111 +43,111 @@ struct Received {
 };
 
 /// Two seconds of measurements, each with the stamp of `clock` at its time.
-Received received(Intake& intake, int from_ms, int to_ms, const std::function<int(int)>& clock) {
+Received received(MeasurementValidator& validator, int from_ms, int to_ms, const std::function<int(int)>& clock) {
   Received all;
   for (int ms = from_ms; ms < to_ms; ms += 5) {
     const Timestamp t = at_ms(clock(ms));
-    intake.add(ImuSample{t, {0, 0, 0}, {0, 0, 9.81}});
-    if (ms % 10 == 0) intake.add(EventBatch{"dvs", {{t, 1, 1, true}, {t + Duration(1), 1, 1, true}}});
-    if (ms % 50 == 0) intake.add(Frame{t, "cam", cv::Mat(10, 10, CV_8UC1)});
-    all.take(intake);
+    validator.add(ImuSample{t, {0, 0, 0}, {0, 0, 9.81}});
+    if (ms % 10 == 0) validator.add(EventBatch{"dvs", {{t, 1, 1, true}, {t + Duration(1), 1, 1, true}}});
+    if (ms % 50 == 0) validator.add(Frame{t, "cam", cv::Mat(10, 10, CV_8UC1)});
+    all.release(validator);
   }
   return all;
 }
 
 int right(int ms) { return ms; }
 
-TEST(Intake, CountsWhatComesFromCamerasThatItDoesNotUse) {
+TEST(MeasurementValidator, CountsWhatComesFromCamerasThatItDoesNotUse) {
   Rig rig = two_cameras();
   rig.cameras.push_back(rig.cameras.front());
   rig.cameras.back().name = "dvs2";
-  Intake intake(rig, used_cameras(rig, Mode::Fused), kInOrder);
-  intake.add(EventBatch{"dvs2", {{at_ms(1), 1, 1, true}}});
-  EXPECT_EQ(intake.counters().unused_camera, 1U);
-  EXPECT_EQ(intake.counters().unknown_camera, 0U);
-  Intake without_frames(rig, used_cameras(rig, Mode::Events), kInOrder);
+  MeasurementValidator validator(rig, used_cameras(rig, Mode::Fused), kInOrder);
+  validator.add(EventBatch{"dvs2", {{at_ms(1), 1, 1, true}}});
+  EXPECT_EQ(validator.counters().unused_camera, 1U);
+  EXPECT_EQ(validator.counters().unknown_camera, 0U);
+  MeasurementValidator without_frames(rig, used_cameras(rig, Mode::Events), kInOrder);
   without_frames.add(Frame{at_ms(1), "cam", cv::Mat(10, 10, CV_8UC1)});
   EXPECT_EQ(without_frames.counters().unused_camera, 1U) << "the mode does not use it";
 }
 
-TEST(Intake, ADamagedStampCostsOneMeasurement) {
+TEST(MeasurementValidator, ADamagedStampCostsOneMeasurement) {
   for (const SensorDelays& delays : {SensorDelays{}, kInOrder}) {
-    Intake intake(two_cameras(), two_cameras(), delays);
-    Received all = received(intake, 0, 1000, right);
-    intake.add(ImuSample{at_ms(998 + kHour), {0, 0, 0}, {0, 0, 9.81}});
-    intake.add(Frame{at_ms(998 + kHour), "cam", cv::Mat(10, 10, CV_8UC1)});
-    intake.add(EventBatch{"dvs", {{at_ms(996), 1, 1, true}, {at_ms(kHour), 1, 1, true}, {at_ms(997), 1, 1, true}}});
-    intake.add(EventBatch{"dvs", {{at_ms(998), 1, 1, true}, {at_ms(2 * kHour), 1, 1, true}}});
-    const Received rest = received(intake, 1000, 2000, right);
-    intake.finish();
-    all.take(intake);
+    MeasurementValidator validator(two_cameras(), two_cameras(), delays);
+    Received all = received(validator, 0, 1000, right);
+    validator.add(ImuSample{at_ms(998 + kHour), {0, 0, 0}, {0, 0, 9.81}});
+    validator.add(Frame{at_ms(998 + kHour), "cam", cv::Mat(10, 10, CV_8UC1)});
+    validator.add(EventBatch{"dvs", {{at_ms(996), 1, 1, true}, {at_ms(kHour), 1, 1, true}, {at_ms(997), 1, 1, true}}});
+    validator.add(EventBatch{"dvs", {{at_ms(998), 1, 1, true}, {at_ms(2 * kHour), 1, 1, true}}});
+    const Received rest = received(validator, 1000, 2000, right);
+    validator.finish();
+    all.release(validator);
     EXPECT_EQ(all.events + rest.events, 403U);
     EXPECT_EQ(all.frames + rest.frames, 40U);
     EXPECT_EQ(all.samples + rest.samples, 400U);
-    EXPECT_EQ(intake.counters().far_ahead, 4U);
-    EXPECT_EQ(intake.counters().clocks_set_back, 0U);
+    EXPECT_EQ(validator.counters().far_ahead, 4U);
+    EXPECT_EQ(validator.counters().clocks_set_back, 0U);
   }
 }
 
-TEST(Intake, ADamagedFirstStampCostsHalfASecond) {
-  Intake intake(two_cameras(), two_cameras(), {});
-  intake.add(ImuSample{at_ms(kHour), {0, 0, 0}, {0, 0, 9.81}});
-  const Received all = received(intake, 0, 2000, right);
+TEST(MeasurementValidator, ADamagedFirstStampCostsHalfASecond) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), {});
+  validator.add(ImuSample{at_ms(kHour), {0, 0, 0}, {0, 0, 9.81}});
+  const Received all = received(validator, 0, 2000, right);
   ASSERT_EQ(all.begins.size(), 1U);
   EXPECT_LE(all.begins.front(), at_ms(505));
   EXPECT_GT(all.stamps.back(), at_ms(1900));
 }
 
-TEST(Intake, AClockThatIsSetBackBeginsANewTimeOnce) {
+TEST(MeasurementValidator, AClockThatIsSetBackBeginsANewTimeOnce) {
   for (const int back_ms : {2'000, 10'000, kHour}) {
-    Intake intake(two_cameras(), two_cameras(), {});
-    const Received before = received(intake, 0, 1000, right);
-    const Received after = received(intake, 1000, 3000, [=](int ms) { return ms - back_ms; });
+    MeasurementValidator validator(two_cameras(), two_cameras(), {});
+    const Received before = received(validator, 0, 1000, right);
+    const Received after = received(validator, 1000, 3000, [=](int ms) { return ms - back_ms; });
     EXPECT_TRUE(before.begins.empty());
     ASSERT_EQ(after.begins.size(), 1U);
     EXPECT_LE(after.begins.front(), at_ms(1505 - back_ms));
     EXPECT_GT(after.stamps.back(), at_ms(2900 - back_ms));
-    EXPECT_EQ(intake.counters().clocks_set_back, 1U);
+    EXPECT_EQ(validator.counters().clocks_set_back, 1U);
   }
 }
 
-TEST(Intake, ASensorWhoseDriverSetsItsClockBackLaterBeginsAnotherTime) {
-  Intake intake(two_cameras(), two_cameras(), {});
-  received(intake, 0, 1000, right);
+TEST(MeasurementValidator, ASensorWhoseDriverSetsItsClockBackLaterBeginsAnotherTime) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), {});
+  received(validator, 0, 1000, right);
   Received all;
   for (int ms = 1000; ms < 5000; ms += 5) {
-    intake.add(ImuSample{at_ms(ms - kHour), {0, 0, 0}, {0, 0, 9.81}});
-    intake.add(EventBatch{"dvs", {{at_ms(ms < 3000 ? ms : ms - kHour), 1, 1, true}}});
-    all.take(intake);
+    validator.add(ImuSample{at_ms(ms - kHour), {0, 0, 0}, {0, 0, 9.81}});
+    validator.add(EventBatch{"dvs", {{at_ms(ms < 3000 ? ms : ms - kHour), 1, 1, true}}});
+    all.release(validator);
   }
   ASSERT_EQ(all.begins.size(), 2U);
   EXPECT_GT(all.stamps.back(), at_ms(4900 - kHour));
   EXPECT_LT(all.stamps.back(), at_ms(5000 - kHour));
 }
 
-TEST(Intake, LessThanASecondBackIsLateUntilTheOldTimeIsReached) {
-  Intake intake(two_cameras(), two_cameras(), {});
-  received(intake, 0, 1000, right);
-  EXPECT_TRUE(received(intake, 1000, 3000, [](int ms) { return ms - 900; }).begins.empty());
+TEST(MeasurementValidator, LessThanASecondBackIsLateUntilTheOldTimeIsReached) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), {});
+  received(validator, 0, 1000, right);
+  EXPECT_TRUE(received(validator, 1000, 3000, [](int ms) { return ms - 900; }).begins.empty());
 }
 
-TEST(Intake, WhatWasNotAskedForIsStillThereAfterAClockWasSetBack) {
-  Intake intake(two_cameras(), two_cameras(), {});
+TEST(MeasurementValidator, WhatWasNotAskedForIsStillThereAfterAClockWasSetBack) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), {});
   for (int ms = 0; ms < 2000; ms += 5) {
-    intake.add(ImuSample{at_ms(ms < 1000 ? ms : ms - kHour), {0, 0, 0}, {0, 0, 9.81}});
+    validator.add(ImuSample{at_ms(ms < 1000 ? ms : ms - kHour), {0, 0, 0}, {0, 0, 9.81}});
   }
-  intake.finish();
+  validator.finish();
   Received all;
-  all.take(intake);
+  all.release(validator);
   EXPECT_EQ(all.samples, 400U);
   EXPECT_EQ(all.begins.size(), 1U);
-  EXPECT_TRUE(intake.ended());
+  EXPECT_TRUE(validator.ended());
 }
 
-TEST(Intake, AHoleOfAllSensorsLeavesTheOrderAsItWas) {
-  Intake whole(two_cameras(), two_cameras(), kInOrder), holed(two_cameras(), two_cameras(), kInOrder);
-  const auto feed = [](Intake& intake, int hole_ms) {
-    const Received all = received(intake, 0, 1000, [=](int ms) { return ms < 500 ? ms : ms + hole_ms; });
+TEST(MeasurementValidator, AHoleOfAllSensorsLeavesTheOrderAsItWas) {
+  MeasurementValidator whole(two_cameras(), two_cameras(), kInOrder), holed(two_cameras(), two_cameras(), kInOrder);
+  const auto feed = [](MeasurementValidator& validator, int hole_ms) {
+    const Received all = received(validator, 0, 1000, [=](int ms) { return ms < 500 ? ms : ms + hole_ms; });
     std::vector<Timestamp> stamps = all.stamps;
     for (Timestamp& t : stamps) {
       if (t > at_ms(500 + hole_ms - 1)) t -= std::chrono::milliseconds(hole_ms);
@@ -158,68 +158,68 @@ TEST(Intake, AHoleOfAllSensorsLeavesTheOrderAsItWas) {
   EXPECT_EQ(holed.counters().far_ahead, 0U);
 }
 
-TEST(Intake, EventsUnderTheMaskNeverComeIn) {
+TEST(MeasurementValidator, EventsUnderTheMaskNeverComeIn) {
   Rig rig = two_cameras();
   std::vector<std::uint8_t> used(100, 255);
   used[11] = 0;  // (1, 1)
   rig.cameras[0].model = rig.cameras[0].model.masked(used);
-  Intake intake(rig, used_cameras(rig, Mode::Events), kInOrder);
-  intake.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
-  intake.add(EventBatch{"dvs", {{at_ms(1), 1, 1, true}, {at_ms(1), 2, 1, true}, {at_ms(2), 1, 1, false}}});
-  intake.finish();
+  MeasurementValidator validator(rig, used_cameras(rig, Mode::Events), kInOrder);
+  validator.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
+  validator.add(EventBatch{"dvs", {{at_ms(1), 1, 1, true}, {at_ms(1), 2, 1, true}, {at_ms(2), 1, 1, false}}});
+  validator.finish();
   Received all;
-  all.take(intake);
+  all.release(validator);
   EXPECT_EQ(all.events, 1U);
-  EXPECT_EQ(intake.counters().events_outside, 0U);
+  EXPECT_EQ(validator.counters().events_outside, 0U);
 }
 
 Measurement height_at(int ms, double height_m = 1.0) { return ExternalSample(HeightSample{at_ms(ms), height_m, 0.1}); }
 
-TEST(Intake, ExternalSamplesThatNoSensorMeasuresAreCounted) {
-  Intake intake(two_cameras(), two_cameras(), kInOrder);
-  intake.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
-  intake.add(height_at(1));
-  intake.add(height_at(2, std::numeric_limits<double>::quiet_NaN()));
-  intake.add(height_at(3, 1e7));
-  intake.add(ExternalSample(HeightSample{Timestamp::max(), 1.0, 0.1}));
-  intake.add(ExternalSample(VelocitySample{at_ms(4), {1, 0, 0}, {0.1, -0.1, 0.1}}));
-  intake.add(ImuSample{at_ms(5), {0, 0, 0}, {0, 0, 9.81}});
+TEST(MeasurementValidator, ExternalSamplesThatNoSensorMeasuresAreCounted) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), kInOrder);
+  validator.add(ImuSample{at_ms(0), {0, 0, 0}, {0, 0, 9.81}});
+  validator.add(height_at(1));
+  validator.add(height_at(2, std::numeric_limits<double>::quiet_NaN()));
+  validator.add(height_at(3, 1e7));
+  validator.add(ExternalSample(HeightSample{Timestamp::max(), 1.0, 0.1}));
+  validator.add(ExternalSample(VelocitySample{at_ms(4), {1, 0, 0}, {0.1, -0.1, 0.1}}));
+  validator.add(ImuSample{at_ms(5), {0, 0, 0}, {0, 0, 9.81}});
   Received all;
-  all.take(intake);
+  all.release(validator);
   EXPECT_EQ(all.stamps, (std::vector<Timestamp>{at_ms(0), at_ms(1), at_ms(5)}));
-  EXPECT_EQ(intake.counters().external_unfit, 3U);
-  EXPECT_EQ(intake.counters().absurd_stamps, 1U);
+  EXPECT_EQ(validator.counters().external_unfit, 3U);
+  EXPECT_EQ(validator.counters().absurd_stamps, 1U);
 }
 
-TEST(Intake, AnotherClockOfAnExternalSensorTouchesNoOtherSensor) {
+TEST(MeasurementValidator, AnotherClockOfAnExternalSensorTouchesNoOtherSensor) {
   for (const int offset_ms : {-kHour, kHour}) {
-    Intake plain(two_cameras(), two_cameras(), {}), intake(two_cameras(), two_cameras(), {});
+    MeasurementValidator plain(two_cameras(), two_cameras(), {}), validator(two_cameras(), two_cameras(), {});
     Received expected = received(plain, 0, 2000, right);
     plain.finish();
-    expected.take(plain);
+    expected.release(plain);
     Received all;
     for (int ms = 0; ms < 2000; ms += 20) {
-      intake.add(height_at(ms + offset_ms));
-      const Received some = received(intake, ms, ms + 20, right);
+      validator.add(height_at(ms + offset_ms));
+      const Received some = received(validator, ms, ms + 20, right);
       all.events += some.events, all.frames += some.frames, all.samples += some.samples;
       EXPECT_TRUE(some.begins.empty());
     }
-    intake.finish();
-    all.take(intake);
+    validator.finish();
+    all.release(validator);
     EXPECT_EQ(all.events, expected.events);
     EXPECT_EQ(all.frames, expected.frames);
     EXPECT_EQ(all.samples, expected.samples);
-    EXPECT_EQ(intake.counters().far_ahead, 0U);
-    EXPECT_EQ(intake.counters().clocks_set_back, 0U);
+    EXPECT_EQ(validator.counters().far_ahead, 0U);
+    EXPECT_EQ(validator.counters().clocks_set_back, 0U);
   }
 }
 
-TEST(Intake, ADamagedStampOfAnExternalSensorIsDropped) {
-  Intake intake(two_cameras(), two_cameras(), kInOrder);
-  Received all = received(intake, 0, 100, right);
-  for (const int ms : {100, kHour, 120, 140}) intake.add(height_at(ms));
-  all = received(intake, 200, 300, right);
-  EXPECT_EQ(intake.counters().far_ahead, 1U);
+TEST(MeasurementValidator, ADamagedStampOfAnExternalSensorIsDropped) {
+  MeasurementValidator validator(two_cameras(), two_cameras(), kInOrder);
+  Received all = received(validator, 0, 100, right);
+  for (const int ms : {100, kHour, 120, 140}) validator.add(height_at(ms));
+  all = received(validator, 200, 300, right);
+  EXPECT_EQ(validator.counters().far_ahead, 1U);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +13,9 @@
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/input/event_history.hpp"
+#include "edged/pipeline/input/frame_queue.hpp"
 #include "edged/pipeline/input/packet.hpp"
+#include "edged/pipeline/input/packet_completion.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -40,7 +41,7 @@ class Packetizer {
   /// event cameras by their first events.
   void add(Measurement measurement);
   /// The next packet whose IMU is complete, if there is one. Call until it returns nothing after each add.
-  std::optional<Packet> next();
+  std::optional<Packet> next() { return completion_.next(counters_); }
   /// The stream has ended: next() gives the remaining packets. Those beyond the last IMU sample are dropped and
   /// counted.
   void finish();
@@ -48,58 +49,29 @@ class Packetizer {
   const PacketizerCounters& counters() const { return counters_; }
 
  private:
-  struct Cut {
-    Timestamp t;
-    bool by_frame = false;
-  };
-  struct FrameCamera {
-    std::string name;
-    Duration offset{0};
-    std::optional<Timestamp> newest = {},
-                             cut = {};  ///< stamps of the last one received and of the last one in a packet
-    std::optional<Timestamp> expected = {};
-    Duration period{0};
-  };
-
   void add_events(const EventBatch& batch);
   void add_frame(Frame frame);
-  void add_imu(const ImuSample& sample);
-  void add_external(const ExternalSample& sample);
-  std::vector<ExternalSample> take_external(Timestamp from, Timestamp to);
   void advance_clock(Timestamp recorded, Timestamp complete);
   void start_at(Timestamp t);
   void make_packets(Timestamp complete_until);
-  std::optional<Cut> next_cut(Timestamp complete_until) const;
-  Timestamp next_event_cut() const;
-  Timestamp frames_given_up() const;
-  void make_packet(const Cut& cut);
-  void take_frames(Packet& packet);
-  void drop_overflow();
-  void drop_waiting(const std::deque<Packet>::iterator& packet);
-  FrameCamera* find_frame_camera(const std::string& name);
+  Timestamp next_cut_without_frame() const;
+  void make_packet(Timestamp t, bool by_frame);
 
   PacketizerConfig config_;
-  std::vector<EventHistory> events_;        // one per event camera
-  std::vector<FrameCamera> frame_cameras_;  // in the order of the rig
-  Duration event_offset_{0};                // of the first event camera
-  Duration least_offset_;                   // of all cameras
-  Duration frame_patience_{0};              // time that a frame waits for those of other cameras
+  std::vector<EventHistory> events_;  // one per event camera
+  FrameQueue frames_;                 // not cut yet
+  PacketCompletion completion_;       // of those that are
   PacketizerCounters counters_;
+  Duration event_offset_{0};  // of the first event camera
+  Duration least_offset_;     // of all cameras
 
   std::optional<Timestamp> last_recorded_;  // newest stamp of any sensor, as recorded
   Timestamp complete_ = Timestamp::min();   // all sensors have reached this stamp, as recorded
 
-  // On the IMU clock from here on.
+  // On the IMU clock.
   bool started_ = false;  // an event or a frame has been received
   Timestamp last_cut_ = Timestamp::min();
   Timestamp heartbeat_from_ = Timestamp::min();  // last cut, or the end of a gap in the recording
-
-  std::deque<Frame> frames_;    // not cut yet, in the order of their stamps
-  std::deque<Packet> waiting_;  // cut, without IMU
-  std::size_t waiting_events_ = 0;
-  std::vector<ImuSample> imu_;
-  std::deque<ExternalSample> external_;  // in the order of their stamps
-  std::optional<Timestamp> last_handed_out_;
 };
 
 }  // namespace edged

@@ -16,7 +16,6 @@ namespace edged {
 namespace {
 
 constexpr Duration kNextTick(1);
-constexpr std::size_t kMostSamples = 1'000'000;
 
 std::size_t bytes_of(const EventBatch& batch) { return batch.events.size() * sizeof(Event); }
 std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.image.elemSize(); }
@@ -24,10 +23,10 @@ std::size_t bytes_of(const Frame& frame) { return frame.image.total() * frame.im
 std::size_t bytes_of(const ImuSample&) { return 0; }
 std::size_t bytes_of(const ExternalSample&) { return 0; }
 
-template <typename Lines>
-auto& line_of(Lines& lines, const std::string& camera) {
-  const auto found = std::ranges::find_if(lines, [&](const auto& line) { return line.camera == camera; });
-  EDGED_CHECK(found != lines.end(), "a measurement of camera '{}', which is not used", camera);
+template <typename Queues>
+auto& queue_of(Queues& queues, const std::string& camera) {
+  const auto found = std::ranges::find_if(queues, [&](const auto& queue) { return queue.camera == camera; });
+  EDGED_CHECK(found != queues.end(), "a measurement of camera '{}', which is not used", camera);
   return *found;
 }
 
@@ -41,8 +40,8 @@ void SensorDelays::validate() const {
   }
 }
 
-Sequencer::Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes)
-    : most_bytes_(most_bytes), imu_{"", {}} {
+Sequencer::Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t max_bytes)
+    : max_bytes_(max_bytes), imu_{"", {}} {
   Duration least(0);  // maximum of t_imu - t_cam: the clock that is farthest ahead
   for (const RigCamera& camera : cameras.cameras) least = std::min(least, camera.time_offset);
   // The lag of a clock behind that adds to the lag of its sensor.
@@ -72,12 +71,12 @@ bool Sequencer::add(Measurement measurement) {
         if constexpr (std::is_same_v<Item, ImuSample>) {
           return push(imu_, std::move(item), *last);
         } else if constexpr (std::is_same_v<Item, ExternalSample>) {
-          auto& line = external_[item.index()];
-          return push(line, std::move(item), *last);
+          auto& queue = external_[item.index()];
+          return push(queue, std::move(item), *last);
         } else {
-          auto& lines = std::get<std::vector<Line<Item>>&>(std::tie(events_, frames_));
-          auto& line = line_of(lines, item.camera);
-          return push(line, std::move(item), *last);
+          auto& queues = std::get<std::vector<Queue<Item>>&>(std::tie(events_, frames_));
+          auto& queue = queue_of(queues, item.camera);
+          return push(queue, std::move(item), *last);
         }
       },
       measurement);
@@ -88,53 +87,54 @@ bool Sequencer::add(Measurement measurement) {
 
 std::size_t Sequencer::waiting() const {
   std::size_t sum = imu_.waiting.size();
-  for (const Line<ExternalSample>& line : external_) sum += line.waiting.size();
-  for (const Line<EventBatch>& line : events_) sum += line.waiting.size();
-  for (const Line<Frame>& line : frames_) sum += line.waiting.size();
+  for (const Queue<ExternalSample>& queue : external_) sum += queue.waiting.size();
+  for (const Queue<EventBatch>& queue : events_) sum += queue.waiting.size();
+  for (const Queue<Frame>& queue : frames_) sum += queue.waiting.size();
   return sum;
 }
 
 template <typename T>
-bool Sequencer::push(Line<T>& line, T item, Timestamp last) {
+bool Sequencer::push(Queue<T>& queue, T item, Timestamp last) {
   const std::size_t bytes = bytes_of(item);
-  if (bytes == 0 ? line.waiting.size() >= kMostSamples : bytes_ + bytes > most_bytes_) return false;
+  if (bytes == 0 ? queue.waiting.size() >= kPipelineTuning.max_queued_samples : bytes_ + bytes > max_bytes_)
+    return false;
   bytes_ += bytes;
-  line.newest = std::max(line.newest.value_or(last), last);
-  line.waiting.push_back(std::move(item));
+  queue.newest = std::max(queue.newest.value_or(last), last);
+  queue.waiting.push_back(std::move(item));
   return true;
 }
 
-/// The lower bound of the line's next stamp: that of its first queued measurement, else of the earliest that can still
+/// The lower bound of the queue's next stamp: that of its first queued measurement, else of the earliest that can still
 /// arrive.
 template <typename T>
-Timestamp Sequencer::earliest(const Line<T>& line) const {
-  if (!line.waiting.empty()) {
+Timestamp Sequencer::earliest(const Queue<T>& queue) const {
+  if (!queue.waiting.empty()) {
     if constexpr (std::is_same_v<T, EventBatch>) {
-      return line.waiting.front().events[line.events_out].t;
+      return queue.waiting.front().events[queue.events_out].t;
     } else {
-      return time_of(line.waiting.front());
+      return time_of(queue.waiting.front());
     }
   }
-  if (finished_ || bytes_ > most_bytes_ / 2) return Timestamp::max();
-  if (std::is_same_v<T, ExternalSample> && !line.newest) return Timestamp::max();  // such a sensor may be missing
-  const Timestamp not_too_late = *newest_ - line.delay + kNextTick;
-  if (!line.newest) return not_too_late;
+  if (finished_ || bytes_ > max_bytes_ / 2) return Timestamp::max();
+  if (std::is_same_v<T, ExternalSample> && !queue.newest) return Timestamp::max();  // such a sensor may be missing
+  const Timestamp not_too_late = *newest_ - queue.delay + kNextTick;
+  if (!queue.newest) return not_too_late;
   const Duration step = std::is_same_v<T, EventBatch> ? Duration(0) : kNextTick;  // two batches may share a stamp
-  return std::max(*line.newest + step, not_too_late);
+  return std::max(*queue.newest + step, not_too_late);
 }
 
-/// The line with the earliest stamp; ties in the order of the cameras. Null without any.
+/// The queue with the earliest stamp; ties in the order of the cameras. Null without any.
 template <typename T>
-Sequencer::Line<T>* Sequencer::first_of(std::vector<Line<T>>& lines) {
-  const auto first = std::ranges::min_element(lines, {}, [this](const Line<T>& line) { return earliest(line); });
-  return first == lines.end() ? nullptr : &*first;
+Sequencer::Queue<T>* Sequencer::first_of(std::vector<Queue<T>>& queues) {
+  const auto first = std::ranges::min_element(queues, {}, [this](const Queue<T>& queue) { return earliest(queue); });
+  return first == queues.end() ? nullptr : &*first;
 }
 
 std::optional<Measurement> Sequencer::next() {
   if (!newest_) return std::nullopt;
-  Line<EventBatch>* const events = first_of(events_);
-  Line<Frame>* const frames = first_of(frames_);
-  Line<ExternalSample>* const external = first_of(external_);
+  Queue<EventBatch>* const events = first_of(events_);
+  Queue<Frame>* const frames = first_of(frames_);
+  Queue<ExternalSample>* const external = first_of(external_);
   const NextStream next = next_stream(earliest(imu_), events ? earliest(*events) : Timestamp::max(),
                                       frames ? earliest(*frames) : Timestamp::max(), earliest(*external));
   switch (next.stream) {
@@ -153,26 +153,26 @@ std::optional<Measurement> Sequencer::next() {
 }
 
 template <typename T>
-std::optional<Measurement> Sequencer::pop(Line<T>& line) {
-  if (line.waiting.empty()) return std::nullopt;  // it may still arrive
-  T item = std::move(line.waiting.front());
-  line.waiting.pop_front();
+std::optional<Measurement> Sequencer::pop(Queue<T>& queue) {
+  if (queue.waiting.empty()) return std::nullopt;  // it may still arrive
+  T item = std::move(queue.waiting.front());
+  queue.waiting.pop_front();
   bytes_ -= bytes_of(item);
   return item;
 }
 
-std::optional<Measurement> Sequencer::pop_events(Line<EventBatch>& line, Timestamp end) {
-  if (line.waiting.empty()) return std::nullopt;
-  EventBatch& batch = line.waiting.front();
-  if (line.events_out == 0 && batch.events.back().t < end) return pop(line);
-  const auto begin = batch.events.begin() + static_cast<std::ptrdiff_t>(line.events_out);
+std::optional<Measurement> Sequencer::pop_events(Queue<EventBatch>& queue, Timestamp end) {
+  if (queue.waiting.empty()) return std::nullopt;
+  EventBatch& batch = queue.waiting.front();
+  if (queue.events_out == 0 && batch.events.back().t < end) return pop(queue);
+  const auto begin = batch.events.begin() + static_cast<std::ptrdiff_t>(queue.events_out);
   const auto cut = std::partition_point(begin, batch.events.end(), [end](const Event& event) { return event.t < end; });
   EventBatch part{batch.camera, {begin, cut}};
-  line.events_out += part.events.size();
+  queue.events_out += part.events.size();
   if (cut == batch.events.end()) {
     bytes_ -= bytes_of(batch);
-    line.waiting.pop_front();
-    line.events_out = 0;
+    queue.waiting.pop_front();
+    queue.events_out = 0;
   }
   return part;
 }

@@ -11,6 +11,7 @@
 
 #include "edged/measurement.hpp"
 #include "edged/options.hpp"
+#include "edged/pipeline/tuning.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -21,15 +22,13 @@ namespace edged {
 /// sensors before the next measurement of another. The order does not depend on the lags of the sensors, as long as
 /// these are within their delays.
 ///
-/// When the queues reach half of most_bytes, nothing is held back any longer; beyond most_bytes of events and frames,
+/// When the queues reach half of max_bytes, nothing is held back any longer; beyond max_bytes of events and frames,
 /// or a million IMU samples, no more input is accepted.
 class Sequencer {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
-
   /// Waits for these cameras and the IMU. The delays are valid, as of validate(); the differences of the camera clocks
   /// are added to them, as stamps are compared as recorded.
-  Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t most_bytes = kMostBytes);
+  Sequencer(const Rig& cameras, const SensorDelays& delays, std::size_t max_bytes = kPipelineTuning.max_queued_bytes);
 
   /// False when there is no room for it, or after finish(). Empty batches are ignored. Only of those cameras.
   bool add(Measurement measurement);
@@ -46,30 +45,30 @@ class Sequencer {
 
  private:
   template <typename T>
-  struct Line {
+  struct Queue {
     std::string camera;  ///< or sensor
     Duration delay;
     std::deque<T> waiting = {};
-    std::size_t events_out = 0;  ///< of the first queued batch
+    std::size_t events_out = 0;  ///< events of the first queued batch that are out
     std::optional<Timestamp> newest = {};
   };
 
   template <typename T>
-  bool push(Line<T>& line, T item, Timestamp last);
+  bool push(Queue<T>& queue, T item, Timestamp last);
   template <typename T>
-  Timestamp earliest(const Line<T>& line) const;
+  Timestamp earliest(const Queue<T>& queue) const;
   template <typename T>
-  std::optional<Measurement> pop(Line<T>& line);
-  std::optional<Measurement> pop_events(Line<EventBatch>& line, Timestamp end);
+  std::optional<Measurement> pop(Queue<T>& queue);
+  std::optional<Measurement> pop_events(Queue<EventBatch>& queue, Timestamp end);
   template <typename T>
-  Line<T>* first_of(std::vector<Line<T>>& lines);
+  Queue<T>* first_of(std::vector<Queue<T>>& queues);
 
-  std::size_t most_bytes_;
-  std::vector<Line<EventBatch>> events_;  // one per camera, no batch empty
-  std::vector<Line<Frame>> frames_;       // one per camera
-  Line<ImuSample> imu_;
-  std::vector<Line<ExternalSample>>
-      external_;           // one per sensor, as in ExternalSample; their stamps do not affect other lines
+  std::size_t max_bytes_;
+  std::vector<Queue<EventBatch>> events_;  // one per camera, no batch empty
+  std::vector<Queue<Frame>> frames_;       // one per camera
+  Queue<ImuSample> imu_;
+  std::vector<Queue<ExternalSample>>
+      external_;           // one per sensor, as in ExternalSample; their stamps do not affect other queues
   std::size_t bytes_ = 0;  // of the queued events and frames
   std::optional<Timestamp> newest_;
   bool finished_ = false;

@@ -5,28 +5,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/pipeline/tuning.hpp"
+
 namespace edged {
 namespace {
-
-constexpr Duration kLongestHistory = std::chrono::seconds(10);
-// Drift with the temperature, which the noise of a data sheet does not cover.
-constexpr double kGyroDrift = 2e-3;   // [rad/s]
-constexpr double kAccelDrift = 0.02;  // [m/s^2]
 
 double squared(double x) { return x * x; }
 
 }  // namespace
 
 double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
-  while (!entries_.empty() && state.t - entries_.front().t > kLongestHistory) entries_.pop_front();
+  while (!entries_.empty() && state.t - entries_.front().t > kPipelineTuning.bias_history) entries_.pop_front();
   Entry now{state.t, {}, P.diagonal().tail<6>()};
   now.bias << state.bias_gyro, state.bias_accel;
   double most = 0.0;
   for (const Entry& before : entries_) {
     const double dt = to_seconds(now.t - before.t);
     Vector6d variance = before.variance;
-    variance.head<3>().array() += squared(kGyroDrift) + squared(noise_.gyro_walk) * dt;
-    variance.tail<3>().array() += squared(kAccelDrift) + squared(noise_.accel_walk) * dt;
+    variance.head<3>().array() += squared(kPipelineTuning.gyro_drift) + squared(noise_.gyro_walk) * dt;
+    variance.tail<3>().array() += squared(kPipelineTuning.accel_drift) + squared(noise_.accel_walk) * dt;
     most = std::max(most, ((now.bias - before.bias).array() / variance.array().sqrt()).abs().maxCoeff());
   }
   entries_.push_back(now);
@@ -35,8 +32,8 @@ double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
 
 BiasPrior BiasHistory::prior(const Entry& entry) {
   const double gyro = entry.variance.head<3>().maxCoeff(), accel = entry.variance.tail<3>().maxCoeff();
-  return {entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kGyroDrift)),
-          std::sqrt(accel + squared(kAccelDrift))};
+  return {entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kPipelineTuning.gyro_drift)),
+          std::sqrt(accel + squared(kPipelineTuning.accel_drift))};
 }
 
 }  // namespace edged

@@ -36,7 +36,7 @@ class BiasHistory {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   struct Entry {
     Timestamp t;
-    Vector6d bias;      ///< of the gyro [rad/s], of the accelerometer [m/s^2]
+    Vector6d bias;      ///< gyro [rad/s], then accelerometer [m/s^2]
     Vector6d variance;  ///< at that time
   };
 

@@ -8,7 +8,7 @@ namespace edged {
 
 /// If all samples are missing, the body keeps its angular velocity and has no acceleration. Samples interpolated
 /// between the ends of a long gap would be less accurate, and wrong about the direction of gravity.
-void BodyMotion::bridge(std::vector<ImuSample>& imu) const {
+void ImuPropagator::bridge(std::vector<ImuSample>& imu) const {
   for (ImuSample& sample : imu) {
     const Eigen::Quaterniond R_O_B = now_.T_O_B.rotation() * so3::exp(omega_B_ * to_seconds(sample.t - imu.front().t));
     sample.gyro_B = now_.bias_gyro + omega_B_;
@@ -16,11 +16,13 @@ void BodyMotion::bridge(std::vector<ImuSample>& imu) const {
   }
 }
 
-Preintegration BodyMotion::predict(std::vector<ImuSample> imu, bool started) {
+Preintegration ImuPropagator::predict(std::vector<ImuSample> imu, bool started) {
   const bool bridged = started && std::ranges::all_of(imu, &ImuSample::interpolated);
   if (bridged) bridge(imu);
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
   const Timestamp t = motion.end();
+  gyro_was_saturated_ = gyro_saturated_ && !motion.gyro_clipped();
+  gyro_saturated_ = motion.gyro_clipped();
   started_ = started;
   bridged_s_ = bridged ? motion.dt() : 0.0;
   std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
@@ -43,12 +45,12 @@ Preintegration BodyMotion::predict(std::vector<ImuSample> imu, bool started) {
   return motion;
 }
 
-SE3 BodyMotion::moved_on(Duration time) const {
+SE3 ImuPropagator::extrapolate(Duration time) const {
   const double s = to_seconds(time);
   return {now_.T_O_B.rotation() * so3::exp(omega_B_ * s), now_.T_O_B.translation() + now_.v_O * s};
 }
 
-SE3 BodyMotion::correct(const OdomState& estimate, bool new_frame) {
+SE3 ImuPropagator::correct(const OdomState& estimate, bool new_frame) {
   SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
   if (bridged_s_ > 0.0 && !new_frame)  // only the cameras measure the rate
     omega_B_ += so3::log(now_.T_O_B.rotation().conjugate() * estimate.T_O_B.rotation()) / bridged_s_;

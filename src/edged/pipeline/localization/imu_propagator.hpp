@@ -12,10 +12,10 @@
 
 namespace edged {
 
-class BodyMotion {
+class ImuPropagator {
  public:
   /// history: how long before a packet poses are kept (the oldest event that a packet's frame can show).
-  BodyMotion(const ImuNoise& noise, Duration history) : noise_(noise), history_(history) {}
+  ImuPropagator(const ImuNoise& noise, Duration history) : noise_(noise), history_(history) {}
 
   /// Propagates `now` to the end of `imu` and returns the preintegrated motion. started: speed and tilt are estimated;
   /// else attitude by gyro only.
@@ -28,8 +28,10 @@ class BodyMotion {
   const OdomState& now() const { return now_; }
   /// Whether speed and tilt of `now` are estimated.
   bool started() const { return started_; }
+  /// The gyro was saturated until the last prediction: the rotation until then is unknown.
+  bool gyro_was_saturated() const { return gyro_was_saturated_; }
   /// T_O_B a few milliseconds after now, at the present rate and velocity.
-  SE3 moved_on(Duration time) const;
+  SE3 extrapolate(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
   const std::vector<StampedPose>& poses() const { return T_O_B_; }
 
@@ -40,6 +42,7 @@ class BodyMotion {
   Duration history_;
   OdomState now_;
   bool started_ = false;
+  bool gyro_saturated_ = false, gyro_was_saturated_ = false;  ///< in the last prediction; in the one before alone
   double bridged_s_ = 0.0;                             ///< duration of the last prediction if it bridged a gap, else 0
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;

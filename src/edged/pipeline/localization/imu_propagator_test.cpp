@@ -25,16 +25,16 @@ OdomState moving(double t_s, double speed) {
   return state;
 }
 
-TEST(BodyMotion, BeforeTheStartTurnsInPlace) {
-  BodyMotion body({}, duration_from_seconds(0.1));
+TEST(ImuPropagator, BeforeTheStartTurnsInPlace) {
+  ImuPropagator body({}, duration_from_seconds(0.1));
   body.predict(samples(0.0, 0.05), false);
   EXPECT_FALSE(body.started());
   EXPECT_EQ(body.now().T_O_B.translation(), Eigen::Vector3d::Zero());
   EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
 }
 
-TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
-  BodyMotion body({}, duration_from_seconds(0.1));
+TEST(ImuPropagator, AfterItFollowsTheEstimateByTheImu) {
+  ImuPropagator body({}, duration_from_seconds(0.1));
   body.predict(samples(0.0, 0.05), false);
   body.correct(moving(0.05, 2.0));
   const Preintegration motion = body.predict(samples(0.05, 0.1), true);
@@ -42,12 +42,12 @@ TEST(BodyMotion, AfterItFollowsTheEstimateByTheImu) {
   EXPECT_EQ(motion.begin(), timestamp_from_seconds(0.05));
   EXPECT_EQ(motion.end(), body.now().t);
   EXPECT_NEAR(body.now().T_O_B.translation().x(), 0.1, 1e-9);
-  EXPECT_NEAR(body.moved_on(duration_from_seconds(0.01)).translation().x(), 0.12, 1e-9);
-  EXPECT_NEAR(so3::log(body.moved_on(duration_from_seconds(0.01)).rotation()).z(), 0.06 * kTurnRate, 1e-9);
+  EXPECT_NEAR(body.extrapolate(duration_from_seconds(0.01)).translation().x(), 0.12, 1e-9);
+  EXPECT_NEAR(so3::log(body.extrapolate(duration_from_seconds(0.01)).rotation()).z(), 0.06 * kTurnRate, 1e-9);
 }
 
-TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
-  BodyMotion body({}, duration_from_seconds(0.1));
+TEST(ImuPropagator, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
+  ImuPropagator body({}, duration_from_seconds(0.1));
   for (int i = 0; i < 6; ++i) {
     body.predict(samples(0.05 * i, 0.05 * (i + 1)), i > 0);
     OdomState estimate = body.now();
@@ -62,8 +62,8 @@ TEST(BodyMotion, KeepsPosesOfItsHistoryWhichMoveWithTheEstimate) {
 }
 
 /// Where samples are missing: at the rate that the cameras have found, without acceleration.
-TEST(BodyMotion, GoesOnAsItDoesInAGapOfTheImu) {
-  BodyMotion body({}, duration_from_seconds(0.1));
+TEST(ImuPropagator, GoesOnAsItDoesInAGapOfTheImu) {
+  ImuPropagator body({}, duration_from_seconds(0.1));
   body.predict(samples(0.0, 0.05), false);
   body.correct(moving(0.05, 2.0));
   body.predict(samples(0.05, 0.1), true);

@@ -99,7 +99,7 @@ TEST_F(LocalizationInTheTestWorld, EndsTheEstimateWhenAClockWasSetBackButKeepsTh
   run(4.0);
   const std::size_t poses = localization_.final_trajectory().poses.size();
   EXPECT_GT(poses, 10U);
-  localization_.begin_time();
+  localization_.begin_epoch();
   EXPECT_EQ(localization_.final_trajectory().poses.size(), poses);
   EXPECT_FALSE(localization_.calibration_covariance("frames"));
   const LocalizationOutput output = step();

@@ -7,14 +7,10 @@
 
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/imu/preintegration.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
 namespace {
-
-constexpr Duration kKept = std::chrono::seconds(20);
-constexpr Duration kBack = std::chrono::seconds(1);
-constexpr Duration kLongestPrediction =
-    std::chrono::seconds(1);  // longest prediction: dead reckoning soon drifts by metres
 
 /// The state at the last sample, propagated from `start` at the first one.
 OdomState propagated(const OdomState& start, std::span<const ImuSample> samples) {
@@ -31,16 +27,17 @@ void StatePrediction::add(const ImuSample& sample) {
   const std::lock_guard lock(mutex_);
   if (!is_plausible(sample.t) || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
   const Duration ahead = imu_.empty() ? Duration(0) : sample.t - imu_.back().t;
-  if (ahead > kKept || ahead < -kBack) {  // another clock, or a damaged stamp
+  if (ahead > kPipelineTuning.imu_history ||
+      ahead < -kPipelineTuning.clock_jump) {  // another clock, or a damaged stamp
     imu_.clear();
     states_.clear();
   }
   if (!imu_.empty() && sample.t <= imu_.back().t) return;
   imu_.push_back(sample);
   if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
-  if (!states_.empty() && sample.t - states_.front().t > kLongestPrediction) states_.clear();
-  if (sample.t - imu_.front().t <= 2 * kKept) return;
-  const auto keep = std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t);
+  if (!states_.empty() && sample.t - states_.front().t > kPipelineTuning.max_prediction) states_.clear();
+  if (sample.t - imu_.front().t <= 2 * kPipelineTuning.imu_history) return;
+  const auto keep = std::ranges::lower_bound(imu_, sample.t - kPipelineTuning.imu_history, {}, &ImuSample::t);
   imu_.erase(imu_.begin(), keep);
 }
 
@@ -48,7 +45,7 @@ void StatePrediction::correct(const std::optional<NavState>& estimate) {
   const std::lock_guard lock(mutex_);
   states_.clear();
   if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
-  if (imu_.back().t - estimate->t > kLongestPrediction) return;
+  if (imu_.back().t - estimate->t > kPipelineTuning.max_prediction) return;
   imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
   states_ = propagate_all(as_odometry(*estimate), imu_);
 }

@@ -7,15 +7,9 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
-namespace {
-
-constexpr double kMorePatience = 1.5;
-constexpr double kMostBiasChange = 3.0;  // [sigma]; up to 2.1 without dynamic objects (docs/decisions/023)
-
-}  // namespace
-
 void StatusConfig::visit(ConfigFields& fields) {
   fields.add("degraded_after_s", degraded_after_s,
              {"s", 0.05, 60, "The status is Degraded after this time without landmarks."});
@@ -29,28 +23,28 @@ void StatusConfig::visit(ConfigFields& fields) {
       {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
 }
 
-void StatusJudge::lose(std::string reason) {
+void StatusMonitor::set_lost(std::string reason) {
   reason_ = std::move(reason);
   contradicted_ = false;
 }
 
-/// Of the IMU by the cameras, where it is too large to go on; empty else.
-std::string StatusJudge::contradiction(double imu_strain, double bias_change) {
-  if (const double most = patience_ * config_.lost_strain; imu_strain > most) {
-    patience_ *= kMorePatience;
+/// How the cameras contradict the IMU, where it is too much to go on; empty else.
+std::string StatusMonitor::contradiction(double imu_strain, double bias_change) {
+  if (const double most = strain_limit_factor_ * config_.lost_strain; imu_strain > most) {
+    strain_limit_factor_ *= kPipelineTuning.strain_limit_growth;
     return fmt::format(
         "the cameras contradict the IMU ({:.2f} of {:.2f} sigma; if always, the calibration is wrong or "
         "the IMU's noise set too low)",
         imu_strain, most);
   }
-  if (bias_change <= kMostBiasChange) return "";
+  if (bias_change <= kPipelineTuning.max_bias_change) return "";
   return fmt::format(
       "the cameras contradict the IMU, whose biases would have changed ({:.1f} of {:.1f} sigma; most features are on "
       "dynamic objects, or the calibration is wrong)",
-      bias_change, kMostBiasChange);
+      bias_change, kPipelineTuning.max_bias_change);
 }
 
-TrackingStatus StatusJudge::judge(const EstimatorResult& result, double bias_change, bool started, Timestamp t) {
+TrackingStatus StatusMonitor::update(const EstimatorResult& result, double bias_change, bool started, Timestamp t) {
   if (!started) {
     last_supported_.reset();
     last_velocity_.reset();
@@ -59,16 +53,29 @@ TrackingStatus StatusJudge::judge(const EstimatorResult& result, double bias_cha
   ever_started_ = true;
   if (result.standstill || result.landmarks_seen >= config_.min_landmarks || !last_supported_) last_supported_ = t;
   if (result.velocity_observed) last_velocity_ = t;
-  alone_s_ = to_seconds(t - *last_supported_);
-  const double drifting_s = last_velocity_ ? std::min(alone_s_, to_seconds(t - *last_velocity_)) : alone_s_;
+  since_visual_update_s_ = to_seconds(t - *last_supported_);
+  const double drifting_s =
+      last_velocity_ ? std::min(since_visual_update_s_, to_seconds(t - *last_velocity_)) : since_visual_update_s_;
   reason_ = result.plausible ? contradiction(result.imu_strain, bias_change) : "the solution has diverged";
   contradicted_ = !reason_.empty();
   vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
-  if (vision_lost_) reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, alone_s_);
+  if (vision_lost_)
+    reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);
   if (!reason_.empty()) return TrackingStatus::Lost;
-  const bool doubtful = result.provisional || alone_s_ > config_.degraded_after_s ||
-                        result.imu_strain > patience_ * config_.degraded_strain;
+  const bool doubtful = result.provisional || since_visual_update_s_ > config_.degraded_after_s ||
+                        result.imu_strain > strain_limit_factor_ * config_.degraded_strain;
   return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
+}
+
+TrackingStatus StatusMonitor::update_in_map(TrackingStatus of_odometry, const std::string& unlocalized) {
+  if (is_tracking(of_odometry)) {
+    if (unlocalized.empty()) {
+      ever_localized_ = true;
+      return of_odometry;
+    }
+    set_lost(unlocalized);
+  }
+  return ever_localized_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
 }
 
 }  // namespace edged

@@ -17,21 +17,24 @@ namespace edged {
 /// Determines the tracking status from the estimator's results, packet by packet. Each loss by IMU strain raises its
 /// limit by half: strain that recurs after a new start is not caused by the scene, but by an IMU noisier than its
 /// calibration.
-class StatusJudge {
+class StatusMonitor {
  public:
-  explicit StatusJudge(const StatusConfig& config) : config_(config) {}
+  explicit StatusMonitor(const StatusConfig& config) : config_(config) {}
 
-  /// Of a packet at t; while the estimator has not started, Initializing before its first start and Lost after.
-  /// bias_change: of the IMU, see BiasHistory [sigma].
-  TrackingStatus judge(const EstimatorResult& result, double bias_change, bool started, Timestamp t);
+  /// The status of a packet at t; while the estimator has not started, Initializing before its first start and Lost
+  /// after. bias_change: of the IMU, see BiasHistory [sigma].
+  TrackingStatus update(const EstimatorResult& result, double bias_change, bool started, Timestamp t);
+  /// With map.localize_only there is a pose only while the body is localized in the map. of_odometry: by update;
+  /// unlocalized: why the body is not localized; empty if it is.
+  TrackingStatus update_in_map(TrackingStatus of_odometry, const std::string& unlocalized);
   /// The estimate was ended by another part.
-  void lose(std::string reason);
-  /// Why the last one was Lost, with numbers.
+  void set_lost(std::string reason);
+  /// Why the last status was Lost, with numbers.
   const std::string& reason() const { return reason_; }
   /// The last loss was by a contradiction of cameras and IMU: the last poses before are wrong.
   bool contradicted() const { return contradicted_; }
   /// Time without enough landmarks or rest until the last packet [s].
-  double unsupported_s() const { return alone_s_; }
+  double since_visual_update_s() const { return since_visual_update_s_; }
   /// The last loss was only a loss of vision: the estimate was valid until then.
   bool vision_lost() const { return vision_lost_; }
 
@@ -39,11 +42,11 @@ class StatusJudge {
   std::string contradiction(double imu_strain, double bias_change);
 
   StatusConfig config_;
-  bool ever_started_ = false;
-  double patience_ = 1.0;                    ///< multiplies the limits of strain
+  bool ever_started_ = false, ever_localized_ = false;
+  double strain_limit_factor_ = 1.0;         ///< on the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or standstill, since the start
   std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
-  double alone_s_ = 0.0;
+  double since_visual_update_s_ = 0.0;
   std::string reason_;
   bool vision_lost_ = false;
   bool contradicted_ = false;

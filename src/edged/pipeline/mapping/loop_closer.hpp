@@ -17,8 +17,8 @@
 
 namespace edged {
 
-/// The map, and the odometry in it, at the time of images.
-struct MapNow {
+/// The map, and the odometry in it, at the time of some images.
+struct MapSnapshot {
   Timestamp t;
   KeyframeMap& map;
   const MapFilter& filter;
@@ -41,14 +41,14 @@ class LoopCloser {
  public:
   explicit LoopCloser(const MapConfig& config) : config_(config) {}
 
-  /// Whether enough old points are matched by position, so that there is no loop to close.
-  bool needless(const MapSearch& search, const KeyframeMap& map, Timestamp t) const;
+  /// Whether too few old points are matched by position.
+  bool loop_needed(const MapSearch& search, const KeyframeMap& map, Timestamp t) const;
   /// A loop on which images of several positions agree, the last of them these. At least one image.
-  std::optional<Loop> find(const MapNow& now, std::span<const PosedImage> images);
+  std::optional<Loop> find(const MapSnapshot& now, std::span<const PosedImage> images);
   /// Corrects all poses by the loop, if the filter believes it. Returns the corrected T_M_O.
   static std::optional<SE3> close(MapFilter& filter, const KeyframeMap& map, double path_m, const Loop& loop);
-  /// The images so far.
-  void forget() { views_.clear(); }
+  /// Forgets the images so far.
+  void reset() { views_.clear(); }
 
  private:
   /// An image that shows an old place by its appearance.
@@ -56,8 +56,9 @@ class LoopCloser {
     SE3 T_O_B, T_M_O;  ///< M by the old keyframes
     Loop loop;
   };
-  std::optional<LoopView> view(const MapNow& now, const PosedImage& posed, std::span<const PosedImage> images) const;
-  std::optional<LoopView> projected(LoopView view, const MapNow& now, std::span<const PosedImage> images) const;
+  std::optional<LoopView> view(const MapSnapshot& now, const PosedImage& posed,
+                               std::span<const PosedImage> images) const;
+  std::optional<LoopView> projected(LoopView view, const MapSnapshot& now, std::span<const PosedImage> images) const;
 
   MapConfig config_;
   std::optional<Timestamp> searched_;

@@ -20,16 +20,16 @@ namespace edged {
 /// Points that should be in view, and their matches, in those images of one instant where enough of them match.
 struct MapSearch {
   std::vector<Candidate> candidates;
-  std::vector<SE3> T_B_C;  ///< of all images
+  std::vector<SE3> T_B_C;  ///< one per image
 
   std::vector<MapObservation> observations() const;
   /// How many points of keyframes before t were matched.
-  std::ptrdiff_t found_before(const KeyframeMap& map, Timestamp t) const;
+  std::ptrdiff_t matched_before(const KeyframeMap& map, Timestamp t) const;
 };
 
 /// Matches the points of keyframes of that time. Those keyframes of the filter become active.
 MapSearch search_map(KeyframeMap& map, MapFilter& filter, const MapConfig& config, const SE3& T_M_O,
-                     std::span<const PosedImage> images, Period made);
+                     std::span<const PosedImage> images, TimeInterval created);
 
 /// One of each per track; points: on the unit plane.
 struct ImageFeatures {
@@ -39,10 +39,8 @@ struct ImageFeatures {
 ImageFeatures features_of(const PosedImage& posed);
 
 /// Place recognition by those features of the image.
-Recognition recognise_place(const KeyframeMap& map, const MapQuery& query, const ImageFeatures& features,
+Recognition recognize_place(const KeyframeMap& map, const MapQuery& query, const ImageFeatures& features,
                             const PosedImage& posed);
-
-constexpr double kSamePlace_m = 0.1, kSamePlace_rad = 0.05;  ///< of two that are recognized
 
 /// The filter with the body at a recognized place, to be confirmed.
 MapFilter filter_at(const MapFilter& filter, const SE3& T_M_O, const SE3& T_O_B, Timestamp t);

@@ -8,16 +8,10 @@
 #include <tuple>
 #include <utility>
 
+#include "edged/map/tuning.hpp"
+
 namespace edged {
 namespace {
-
-constexpr double kSearchInterval_s = 0.09;                // between images, until relocalization after a loss
-constexpr double kFarthest_m = 0.5, kFarthest_mps = 0.5;  // bound on the error of dead reckoning
-constexpr double kWidest_rad = 0.1, kWidest_radps = 0.01;
-constexpr double kRestartPosition_m = 0.1, kRestartYaw_rad = 0.05;
-constexpr double kYoungDrift = 5.0;     // of an odometry that has just started, whose scale is still inaccurate
-constexpr double kForgetAfter_s = 5.0;  // with localize_only: in motion without a map match
-constexpr int kCellsAcross = 6, kCellsDown = 4;  // of an image, to measure how much of it the map covers
 
 /// Replaces the points by those that the window has estimated.
 void place_points(MapView& view, const KeyframeView& estimated) {
@@ -49,33 +43,37 @@ void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
   begin_start(now);
 }
 
-void Mapper::doubt(const OdomState& now) {
+void Mapper::reset_uncertainty(const OdomState& now) {
   odom_to_map_.restart(now.t);
   begin_start(now);
 }
 
 void Mapper::begin_start(const OdomState& now) {
-  const bool first = map_.keyframes().empty() || !known().contains(map_.keyframes().back().t);
-  const double position_sigma = first ? 0.0 : kRestartPosition_m, yaw_sigma = first ? 0.0 : kRestartYaw_rad;
-  T_M_O_guess_ = odom_to_map_.T_M_O();
-  filter_.restart(T_M_O_guess_, now.T_O_B, now.t, position_sigma, yaw_sigma);
-  if (record_.empty()) matched_ = now.t;
-  record_.restart({now.t, now.T_O_B}, kRestartPosition_m, kRestartYaw_rad);
+  const bool first = map_.keyframes().empty() || !localized_period().contains(map_.keyframes().back().t);
+  const double position_sigma = first ? 0.0 : kMapTuning.same_place_m,
+               yaw_sigma = first ? 0.0 : kMapTuning.same_place_rad;
+  T_M_O_dead_reckoning_ = odom_to_map_.T_M_O();
+  filter_.restart(T_M_O_dead_reckoning_, now.T_O_B, now.t, position_sigma, yaw_sigma);
+  if (record_.empty()) last_match_ = now.t;
+  record_.restart({now.t, now.T_O_B}, kMapTuning.same_place_m, kMapTuning.same_place_rad);
   started_ = now.t;
-  dead_reckoning_s_ = first ? 0.0 : (searching_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
-  searching_ = !first;
-  recognised_.clear();
-  loops_.forget();
+  dead_reckoning_s_ =
+      first ? 0.0 : (relocalizing_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
+  relocalizing_ = !first;
+  relocalization_candidates_.clear();
+  loops_.reset();
   p_O_B_ = now.T_O_B.translation();
   in_window_.clear();
-  found_.clear();
+  matches_.clear();
 }
 
-void Mapper::begin_time() {
+void Mapper::begin_epoch() {
+  FinalTrajectory previous = final_trajectory();
   OdomToMap odom_to_map = std::move(odom_to_map_);
-  odom_to_map.forget_history();
+  odom_to_map.clear_history();
   const std::optional<SavedMap> fixed = config_.localize_only ? save() : std::nullopt;
   *this = Mapper(config_, lost_after_s_);
+  previous_trajectory_ = std::move(previous);
   odom_to_map_ = std::move(odom_to_map);
   if (fixed) load(*fixed);
 }
@@ -90,11 +88,11 @@ void Mapper::load(const SavedMap& map) {
   record_.load(map.T_M_K, config_.localize_only);
   filter_.load(map.T_M_K, map.covariance, map.inactive);
   if (config_.localize_only) fixed_ = SavedMap{{}, {}, {}, map.covariance, map.inactive};
-  if (!map.keyframes.empty()) unlocated_before_ = Timestamp();
+  if (!map.keyframes.empty()) loaded_map_until_ = Timestamp();
 }
 
 std::optional<SavedMap> Mapper::save() const {
-  if (unlocated_before_ && !config_.localize_only) return std::nullopt;
+  if (loaded_map_until_ && !config_.localize_only) return std::nullopt;
   SavedMap now{{}, map_.keyframes(), filter_.keyframes(), filter_.keyframe_covariance(), filter_.inactive()};
   if (fixed_) now.covariance = fixed_->covariance, now.inactive = fixed_->inactive;
   return now;
@@ -102,14 +100,14 @@ std::optional<SavedMap> Mapper::save() const {
 
 void Mapper::predict(const OdomState& now, bool at_rest) {
   const bool young = dead_reckoning_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
-  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kYoungDrift : 1.0);
+  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kMapTuning.young_drift_factor : 1.0);
   predicted_ = now.t;
-  if (at_rest) matched_ = now.t;
+  if (at_rest) last_match_ = now.t;
   if (!at_rest) path_m_ += (now.T_O_B.translation() - p_O_B_).norm();
   p_O_B_ = now.T_O_B.translation();
-  if (!config_.localize_only || unlocated_before_ || unmatched_s() <= kForgetAfter_s) return;
-  unlocated_before_ = Timestamp();
-  doubt(now);
+  if (!config_.localize_only || loaded_map_until_ || unmatched_s() <= kMapTuning.max_unmatched_s) return;
+  loaded_map_until_ = Timestamp();
+  reset_uncertainty(now);
 }
 
 /// The filter takes the matches if they agree, and corrects T_M_O.
@@ -120,15 +118,15 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search
   const std::optional<SE3> corrected = filter.update(observations, search.candidates.size(), search.T_B_C);
   if (!corrected) return false;
   odom_to_map_.correct(t, *corrected);
-  matched_ = t;
-  found_.clear();
+  last_match_ = t;
+  matches_.clear();
   for (const Candidate& candidate : search.candidates) {
-    if (!config_.localize_only) map_.note(candidate, t);
-    if (!candidate.found) continue;
+    if (!config_.localize_only) map_.record_search(candidate, t);
+    if (!candidate.matched) continue;
     const MapObservation& observation = candidate.observation;
-    found_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
-                      filter.keyframes()[observation.keyframe] * observation.p_K,
-                      images[observation.camera].image.camera});
+    matches_.push_back({map_.keyframes()[observation.keyframe].t, candidate.pixel,
+                        filter.keyframes()[observation.keyframe] * observation.p_K,
+                        images[observation.camera].image.camera});
   }
   for (MapObservation& observation : observations)
     observation.keyframe = static_cast<std::uint32_t>(map_.keyframes()[observation.keyframe].number);
@@ -138,77 +136,84 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search
 
 bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
   // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
-  const double interval_s = searching_ && !unlocated_before_ ? kSearchInterval_s : config_.min_interval_s;
-  if (looked_at_ && to_seconds(t - *looked_at_) < interval_s) return false;
-  looked_at_ = t;
-  found_.clear();
-  const Period old_enough{known().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
+  const double interval_s =
+      relocalizing_ && !loaded_map_until_ ? kMapTuning.relocalization_interval_s : config_.min_interval_s;
+  if (last_search_ && to_seconds(t - *last_search_) < interval_s) return false;
+  last_search_ = t;
+  matches_.clear();
+  const TimeInterval old_enough{localized_period().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
   const SE3 T_M_O = odom_to_map_.T_M_O();
   const MapSearch here = search_map(map_, filter_, config_, T_M_O, images, old_enough);
-  const std::ptrdiff_t older = here.found_before(map_, started_);
+  const std::ptrdiff_t older = here.matched_before(map_, started_);
   const bool agreed = update(filter_, T_M_O, here, t, images);
-  if (!searching_ && !unlocated_before_) {
-    if (agreed && loops_.needless(here, map_, t)) {
-      loops_.forget();
-    } else if (close_loop(t, images)) {
-      const SE3 closed = odom_to_map_.T_M_O();
-      update(filter_, closed, search_map(map_, filter_, config_, closed, images, old_enough), t, images);
-    }
-    return false;
+  if (relocalizing_ || loaded_map_until_)
+    return relocalize(t, images, agreed && older >= config_.filter.min_observations);
+  if (agreed && !loops_.loop_needed(here, map_, t)) {
+    loops_.reset();
+  } else if (close_loop(t, images)) {
+    const SE3 closed = odom_to_map_.T_M_O();
+    update(filter_, closed, search_map(map_, filter_, config_, closed, images, old_enough), t, images);
   }
-  const bool found_by_guess = searching_ && agreed && older >= config_.filter.min_observations;
-  const bool found_by_appearance = (unlocated_before_ || !found_by_guess) && recognise(t, images);
-  if (found_by_appearance) unlocated_before_.reset();
-  if (found_by_guess || found_by_appearance) searching_ = false;
-  return found_by_guess || found_by_appearance;
+  return false;
+}
+
+/// matches_older: points of keyframes before the newest start match where dead reckoning has them.
+bool Mapper::relocalize(Timestamp t, std::span<const PosedImage> images, bool matches_older) {
+  const bool by_dead_reckoning = relocalizing_ && matches_older;
+  const bool by_appearance = (loaded_map_until_ || !by_dead_reckoning) && relocalize_by_appearance(t, images);
+  if (by_appearance) loaded_map_until_.reset();
+  if (by_dead_reckoning || by_appearance) relocalizing_ = false;
+  return by_dead_reckoning || by_appearance;
 }
 
 /// Whether dead reckoning can be that far off. Its heading is that of the gyro, and accurate, which rejects most
 /// similar places.
 bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
-  const SE3 off = (T_M_O_guess_ * T_O_B).inverse() * (T_M_O * T_O_B);
-  return off.translation().norm() < kFarthest_m + kFarthest_mps * dead_reckoning_s_ &&
-         so3::log(off.rotation()).norm() < kWidest_rad + kWidest_radps * dead_reckoning_s_;
+  const SE3 off = (T_M_O_dead_reckoning_ * T_O_B).inverse() * (T_M_O * T_O_B);
+  return off.translation().norm() < kMapTuning.dead_reckoning_m + kMapTuning.dead_reckoning_mps * dead_reckoning_s_ &&
+         so3::log(off.rotation()).norm() <
+             kMapTuning.max_turn_rad + kMapTuning.dead_reckoning_radps * dead_reckoning_s_;
 }
 
 /// T_M_O by place recognition, from keyframes of that time.
-std::optional<SE3> Mapper::recognised(const PosedImage& posed, Period made) const {
+std::optional<SE3> Mapper::recognized_T_M_O(const PosedImage& posed, TimeInterval created) const {
   const SE3& T_O_C = posed.T_O_C;
   const std::optional<SE3> T_M_C =
-      recognise_place(map_, {posed.image.camera, made, filter_.keyframes()}, features_of(posed), posed).T_M_C;
+      recognize_place(map_, {posed.image.camera, created, filter_.keyframes()}, features_of(posed), posed).T_M_C;
   return T_M_C ? std::optional(*T_M_C * T_O_C.inverse()) : std::nullopt;
 }
 
 /// Relocalization by place recognition, in the keyframes before the newest start or in the loaded map. The images of
 /// two instants must agree on the pose: two cameras of one instant may both take a similar place for this one.
-bool Mapper::recognise(Timestamp t, std::span<const PosedImage> images) {
-  const Period before{Timestamp::min(), unlocated_before_.value_or(started_)};
+bool Mapper::relocalize_by_appearance(Timestamp t, std::span<const PosedImage> images) {
+  const TimeInterval before{Timestamp::min(), loaded_map_until_.value_or(started_)};
   const SE3 T_O_B = odom_to_map_.T_M_O().inverse() * filter_.T_M_B();
-  const std::vector<SE3> last = std::exchange(recognised_, {});
+  const std::vector<SE3> last = std::exchange(relocalization_candidates_, {});
   for (const PosedImage& posed : images) {
-    const std::optional<SE3> T_M_O = recognised(posed, before);
-    if (T_M_O && (unlocated_before_ || plausible(*T_M_O, T_O_B))) recognised_.push_back(*T_M_O);
+    const std::optional<SE3> T_M_O = recognized_T_M_O(posed, before);
+    if (T_M_O && (loaded_map_until_ || plausible(*T_M_O, T_O_B))) relocalization_candidates_.push_back(*T_M_O);
   }
   const auto agrees = [&](const SE3& T_M_O, const SE3& other) {
     const SE3 between = (other * T_O_B).inverse() * (T_M_O * T_O_B);
-    return between.translation().norm() <= kSamePlace_m && so3::log(between.rotation()).norm() <= kSamePlace_rad;
+    return between.translation().norm() <= kMapTuning.same_place_m &&
+           so3::log(between.rotation()).norm() <= kMapTuning.same_place_rad;
   };
-  return std::ranges::any_of(recognised_, [&](const SE3& T_M_O) {
+  return std::ranges::any_of(relocalization_candidates_, [&](const SE3& T_M_O) {
     return std::ranges::any_of(last, [&](const SE3& other) { return agrees(T_M_O, other); }) &&
            confirmed(T_M_O, t, images, before);
   });
 }
 
 /// Whether the points that should then be in view match. Keyframes mapped since, at uncertain poses, are removed.
-bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made) {
+bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, TimeInterval created) {
   const SE3 T_M_O_so_far = odom_to_map_.T_M_O(), T_O_B = T_M_O_so_far.inverse() * filter_.T_M_B();
   MapFilter there = filter_at(filter_, T_M_O, T_O_B, t);
-  if (!update(there, T_M_O, search_map(map_, there, config_, T_M_O, images, made), t, images)) return false;
-  odom_to_map_.forget_guess();
+  if (!update(there, T_M_O, search_map(map_, there, config_, T_M_O, images, created), t, images)) return false;
+  odom_to_map_.drop_dead_reckoning();
   // Where the map never changes, all poses so far were published in its frame.
-  if (unlocated_before_ && !config_.localize_only) odom_to_map_.move_before(T_M_O * T_M_O_so_far.inverse());
+  if (loaded_map_until_ && !config_.localize_only) odom_to_map_.transform_earlier(T_M_O * T_M_O_so_far.inverse());
   filter_ = std::move(there);
-  while (map_.keyframes().back().t >= made.before) remove_keyframe(map_.keyframes().size() - 1);
+  while (map_.keyframes().back().t >= created.before) remove_keyframe(map_.keyframes().size() - 1);
   return true;
 }
 
@@ -216,39 +221,38 @@ bool Mapper::confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage
 bool Mapper::close_loop(Timestamp t, std::span<const PosedImage> images) {
   if (config_.localize_only) return false;
   const std::optional<Loop> loop =
-      loops_.find({t, map_, filter_, odom_to_map_.T_M_O(), path_m_, known().since}, images);
+      loops_.find({t, map_, filter_, odom_to_map_.T_M_O(), path_m_, localized_period().since}, images);
   if (!loop) return false;
   const SE3 before = filter_.T_M_B();
   const std::optional<SE3> T_M_O = LoopCloser::close(filter_, map_, path_m_, *loop);
   if (!T_M_O) return false;
   const SE3 off = before.inverse() * filter_.T_M_B();
-  loop_closure_ = {map_.keyframes()[loop->keyframe].t, off.translation().norm(), so3::log(off.rotation()).norm()};
+  closed_loop_ = {t, {map_.keyframes()[loop->keyframe].t, off.translation().norm(), so3::log(off.rotation()).norm()}};
   odom_to_map_.correct(t, *T_M_O);
-  closed_at_ = t;
   return true;
 }
 
 /// Initial values of the final trajectory.
 std::optional<TrajectorySmoother::Closed> Mapper::closed() const {
-  if (!closed_at_) return std::nullopt;
-  TrajectorySmoother::Closed closed{*closed_at_, {}};
+  if (!closed_loop_) return std::nullopt;
+  TrajectorySmoother::Closed closed{closed_loop_->t, {}};
   for (std::size_t k = 0; k < map_.keyframes().size(); ++k)
     closed.keyframes.emplace(map_.keyframes()[k].number, filter_.keyframes()[k]);
   return closed;
 }
 
-/// Of all cells with features, in any of the images.
+/// The share of all cells with features in which the map has points, in any of the images.
 double Mapper::covered_share(std::span<const PosedImage> images) const {
   std::set<std::tuple<std::string_view, int, int>> textured, shown;
   for (const PosedImage& posed : images) {
     const TrackedImage& image = posed.image;
     const auto cell = [&](const Eigen::Vector2d& pixel) {
       return std::tuple(std::string_view(image.camera),
-                        static_cast<int>(pixel.x() * kCellsAcross / image.model.width()),
-                        static_cast<int>(pixel.y() * kCellsDown / image.model.height()));
+                        static_cast<int>(pixel.x() * kMapTuning.coverage_columns / image.model.width()),
+                        static_cast<int>(pixel.y() * kMapTuning.coverage_rows / image.model.height()));
     };
     for (const Track& track : image.tracks) textured.insert(cell(track.pixel));
-    for (const MapMatch& point : found_) {
+    for (const MapMatch& point : matches_) {
       if (point.camera == image.camera && textured.contains(cell(point.pixel))) shown.insert(cell(point.pixel));
     }
   }
@@ -257,7 +261,7 @@ double Mapper::covered_share(std::span<const PosedImage> images) const {
 
 void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   if (config_.localize_only || to_seconds(t - started_) < config_.keyframes.min_known_s) return;
-  if (!map_.wants(covered_share(images))) return;
+  if (!map_.needs_keyframe(covered_share(images))) return;
   MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, {}});
   keyframe.path_m = path_m_;
   for (const PosedImage& posed : images) {
@@ -272,19 +276,19 @@ void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   }
 }
 
-void Mapper::take(const MarginalizedKeyframe& record) {
+void Mapper::add_keyframe(const MarginalizedKeyframe& record) {
   record_.refine({record.t, record.T_O_B});
   while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
   if (in_window_.empty() || in_window_.front().t != record.t) return;
   MapKeyframe& keyframe = in_window_.front();
   for (MapView& view : keyframe.views)
     place_points(view, *std::ranges::find(record.views, view.camera, &KeyframeView::camera));
-  if (!map_.gains_by(keyframe)) return;
+  if (!map_.prune_points(keyframe)) return;
   keyframe.number = record_.add_keyframe({record.t, record.T_O_B});
   map_.add(std::move(keyframe));
   in_window_.pop_front();
   filter_.add_keyframe(odom_to_map_.T_M_O(), record.T_O_B, record.t);
-  if (const auto superfluous = map_.superfluous(known())) remove_keyframe(*superfluous);
+  if (const auto redundant = map_.redundant_keyframe(localized_period())) remove_keyframe(*redundant);
 }
 
 void Mapper::remove_keyframe(std::size_t keyframe) {
@@ -293,12 +297,12 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
 }
 
 FinalTrajectory Mapper::final_trajectory() const {
-  TrajectorySmoother::Path path = record_.path(odom_to_map_, closed());
-  FinalTrajectory known{std::move(path.poses), {}};
-  for (const MapKeyframe& keyframe : map_.keyframes()) {
-    known.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
-  }
-  return known;
+  const TrajectorySmoother::Path path = record_.path(odom_to_map_, closed());
+  FinalTrajectory all = previous_trajectory_;
+  all.poses.insert(all.poses.end(), path.poses.begin(), path.poses.end());
+  for (const MapKeyframe& keyframe : map_.keyframes())
+    all.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
+  return all;
 }
 
 }  // namespace edged

@@ -34,9 +34,9 @@ class Mapper {
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
   void restart(const SE3& T_new_old, const OdomState& now);
   /// O continues, but the rotation until now is unknown: its pose in M is uncertain, as after a start.
-  void doubt(const OdomState& now);
-  /// A new time begins: the map is discarded, unless it never changes, and the body continues from its pose.
-  void begin_time();
+  void reset_uncertainty(const OdomState& now);
+  /// A new epoch of stamps begins: the map is discarded, unless it never changes, and the body continues from its pose.
+  void begin_epoch();
   /// The odometry has reached `now`; at_rest: it is known to stand still.
   void predict(const OdomState& now, bool at_rest = false);
   /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
@@ -45,46 +45,46 @@ class Mapper {
   /// The packet has become a keyframe, with these images.
   void keyframe(Timestamp t, std::span<const PosedImage> images);
   /// A keyframe has left the window: kept if it is worth it.
-  void take(const MarginalizedKeyframe& record);
+  void add_keyframe(const MarginalizedKeyframe& record);
 
-  /// That pose of the odometry has been published.
-  void note(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
-
-  /// Time of dead reckoning at the newest start [s]. It bounds the result of relocalization.
-  double dead_reckoning_s() const { return dead_reckoning_s_; }
+  /// Adds a published pose of the odometry to the trajectory.
+  void add_pose(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
 
   const OdomToMap& odom_to_map() const { return odom_to_map_; }
-  /// The map matches in the images of that instant.
-  std::vector<MapMatch> map_matches(Timestamp t) const { return looked_at_ == t ? found_ : std::vector<MapMatch>(); }
-  /// By the images of that instant.
-  std::optional<LoopClosure> loop_closure(Timestamp t) const {
-    return closed_at_ == t ? std::optional(loop_closure_) : std::nullopt;
+  /// The map matches in the images of an instant.
+  std::vector<MapMatch> map_matches(Timestamp t) const {
+    return last_search_ == t ? matches_ : std::vector<MapMatch>();
   }
-  /// In M.
+  /// The loop that the images of an instant have closed.
+  std::optional<LoopClosure> loop_closure(Timestamp t) const {
+    return closed_loop_ && closed_loop_->t == t ? std::optional(closed_loop_->closure) : std::nullopt;
+  }
+  /// The trajectory in M, with those of earlier epochs.
   FinalTrajectory final_trajectory() const;
 
   /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
   void load(const SavedMap& map);
   bool started() const { return !record_.empty(); }
-  /// All but the cameras. Nothing while awaiting relocalization in a loaded map, unless that never changes: keyframes
-  /// of this run are in another frame than that.
+  /// The map without its cameras. Nothing while awaiting relocalization in a loaded map, unless that never changes:
+  /// keyframes of this run are in another frame than that.
   std::optional<SavedMap> save() const;
-  bool awaiting_relocalization() const { return unlocated_before_.has_value(); }
+  bool awaiting_relocalization() const { return loaded_map_until_.has_value(); }
   /// With localize_only: the body has been relocalized in the loaded map, and no loss has followed.
-  bool localized() const { return !searching_ && !unlocated_before_ && !map_.keyframes().empty(); }
-  /// Since the last map match or rest [s].
-  double unmatched_s() const { return to_seconds(predicted_ - matched_); }
+  bool localized() const { return !relocalizing_ && !loaded_map_until_ && !map_.keyframes().empty(); }
+  /// Time since the last map match or rest [s].
+  double unmatched_s() const { return to_seconds(predicted_ - last_match_); }
 
  private:
   /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
   /// it.
-  Period known() const { return {.since = unlocated_before_.value_or(Timestamp::min())}; }
+  TimeInterval localized_period() const { return {.since = loaded_map_until_.value_or(Timestamp::min())}; }
   void begin_start(const OdomState& now);
   bool update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
               std::span<const PosedImage> images);
-  std::optional<SE3> recognised(const PosedImage& posed, Period made) const;
-  bool recognise(Timestamp t, std::span<const PosedImage> images);
-  bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, Period made);
+  std::optional<SE3> recognized_T_M_O(const PosedImage& posed, TimeInterval created) const;
+  bool relocalize(Timestamp t, std::span<const PosedImage> images, bool matches_older);
+  bool relocalize_by_appearance(Timestamp t, std::span<const PosedImage> images);
+  bool confirmed(const SE3& T_M_O, Timestamp t, std::span<const PosedImage> images, TimeInterval created);
   bool plausible(const SE3& T_M_O, const SE3& T_O_B) const;
   bool close_loop(Timestamp t, std::span<const PosedImage> images);
   std::optional<TrajectorySmoother::Closed> closed() const;
@@ -99,22 +99,26 @@ class Mapper {
   TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
-  std::vector<MapMatch> found_;        ///< in the newest images that were matched
-  std::optional<Timestamp> looked_at_;
+  std::vector<MapMatch> matches_;      ///< in the newest images that were matched
+  std::optional<Timestamp> last_search_;
   Timestamp predicted_;            ///< newest pose of the odometry
-  Timestamp matched_;              ///< the last map match or rest
+  Timestamp last_match_;           ///< or rest
   Timestamp started_;              ///< the estimator's newest start
-  SE3 T_M_O_guess_;                ///< there, by dead reckoning
+  SE3 T_M_O_dead_reckoning_;       ///< at the newest start, by dead reckoning
   double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes
-  bool searching_ = false;         ///< since then nothing older has been matched
+  bool relocalizing_ = false;      ///< since the newest start nothing older has been matched
   /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
-  std::optional<Timestamp> unlocated_before_;
+  std::optional<Timestamp> loaded_map_until_;
   double path_m_ = 0.0;  ///< length of the odometry's path in motion
   Eigen::Vector3d p_O_B_ = Eigen::Vector3d::Zero();
   LoopCloser loops_;
-  std::optional<Timestamp> closed_at_;  ///< of the last loop
-  LoopClosure loop_closure_;            ///< then
-  std::vector<SE3> recognised_;  ///< T_M_O by place recognition in the last images, to be confirmed by a later one
+  struct ClosedLoop {
+    Timestamp t;
+    LoopClosure closure;
+  };
+  std::optional<ClosedLoop> closed_loop_;       ///< the last one
+  std::vector<SE3> relocalization_candidates_;  ///< T_M_O by place recognition in the last images, to be confirmed
+  FinalTrajectory previous_trajectory_;         ///< that of earlier epochs
 };
 
 }  // namespace edged

@@ -57,7 +57,7 @@ class MapperBeforeAWall : public testing::Test {
     mapper.keyframe(second(t_s), std::vector{PosedImage{seen, T_O_B * T_B_C_}});
     MarginalizedKeyframe record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
     for (const Track& track : seen.tracks) record.views.front().points.push_back({track.id, track.point, 0.5, 0.005});
-    mapper.take(record);
+    mapper.add_keyframe(record);
   }
 
   bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B) const {
@@ -100,7 +100,7 @@ TEST_F(MapperBeforeAWall, RelocalizesAfterALoss) {
   Mapper mapper{MapConfig{}, kLostAfter_s};
   mapper.restart(SE3(), now(0.0, SE3()));
   add_keyframe(mapper, 5.0, SE3());
-  mapper.note(now(6.0, SE3()));
+  mapper.add_pose(now(6.0, SE3()));
   const SE3 T_new_old(so3::exp({0, 0, 0.5}), {3, 2, 1}), off = shift(0.0, 0.02, 0.01);
   mapper.restart(T_new_old, now(10.0, T_new_old * off));
   EXPECT_TRUE(localize(mapper, 10.1, T_new_old * off, SE3()));
@@ -244,7 +244,7 @@ TEST_F(MapperThatOnlyLocalizes, ForgetsThePlaceWithoutMatchesButNotAtRest) {
 TEST_F(MapperThatOnlyLocalizes, IsRelocalizedNearWhereItWasAfterADoubt) {
   mapper_.restart(SE3(), now(0.0, T_O_B_));
   relocalize(0.3);
-  mapper_.doubt(now(1.0, T_O_B_));
+  mapper_.reset_uncertainty(now(1.0, T_O_B_));
   EXPECT_FALSE(mapper_.localized());
   EXPECT_TRUE(localize(mapper_, 1.1, T_O_B_, SE3())) << "one image is enough near dead reckoning";
   EXPECT_TRUE(mapper_.localized());
@@ -253,7 +253,7 @@ TEST_F(MapperThatOnlyLocalizes, IsRelocalizedNearWhereItWasAfterADoubt) {
 TEST_F(MapperThatOnlyLocalizes, KeepsTheMapInANewTime) {
   mapper_.restart(SE3(), now(0.0, T_O_B_));
   relocalize(0.3);
-  mapper_.begin_time();
+  mapper_.begin_epoch();
   EXPECT_FALSE(mapper_.localized());
   EXPECT_EQ(map_now(), map_);
   mapper_.restart(SE3(), now(0.0, T_O_B_));
@@ -288,7 +288,7 @@ class MapperOfTwoCameras : public MapperBeforeAWall {
       for (const Track& track : seen[camera].image.tracks)
         record.views[camera].points.push_back({track.id, track.point, 0.5, 0.005});
     }
-    mapper.take(record);
+    mapper.add_keyframe(record);
   }
 
   bool localize_both(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B,
@@ -325,7 +325,7 @@ TEST_F(MapperOfTwoCameras, GoesOnWithTheOneThatIsNotCovered) {
     const std::optional<SavedMap> saved = mapper.save();
     for (const MapView& view : saved->keyframes.front().views)
       for (const MapPoint& point : view.points)
-        EXPECT_TRUE(view.camera == other || point.tried == 0) << "points do not count as missed under a cover";
+        EXPECT_TRUE(view.camera == other || point.searched == 0) << "points do not count as missed under a cover";
   }
 }
 
@@ -351,34 +351,21 @@ TEST_F(MapperBeforeAWall, GoesOnFromWhereTheBodyIsInANewTime) {
   mapper.restart(shift(1.0, 0.0, 0.0), now(3.0, SE3()));
   const SE3 T_M_O = mapper.odom_to_map().T_M_O();
   EXPECT_NEAR(T_M_O.translation().x(), -1.0, 1e-12);
-  mapper.begin_time();
+  mapper.begin_epoch();
   EXPECT_FALSE(mapper.started());
   EXPECT_EQ(mapper.odom_to_map().T_M_O().translation(), T_M_O.translation());
 }
 
-/// Dead reckoning until a start at 12 s, after an estimate that ended at 11 s.
-double dead_reckoning_of_a_restart(double lost_after_s) {
-  OdometryConfig config;
-  ConfigFields::of(config).set("status.lost_after_s", std::to_string(lost_after_s));
-  SavedMap map;
-  map.keyframes.push_back({timestamp_from_seconds(10), timestamp_from_seconds(10), {}});
-  map.T_M_K.emplace_back();
-  map.covariance = 1e-4 * Eigen::MatrixXd::Identity(6, 6);
-  Mapper mapper(config.map, config.status.lost_after_s);
-  mapper.load(map);
-  OdomState now;
-  now.t = timestamp_from_seconds(10.5);
-  mapper.restart(SE3(), now);
-  now.t = timestamp_from_seconds(11);
-  mapper.predict(now);
-  now.t = timestamp_from_seconds(12);
-  mapper.restart(SE3(), now);
-  return mapper.dead_reckoning_s();
-}
-
-TEST(Mapper, BoundsRelocalizationByTheTimeAfterWhichALossIsReported) {
-  EXPECT_DOUBLE_EQ(dead_reckoning_of_a_restart(6.0) - dead_reckoning_of_a_restart(2.5), 3.5);
-  EXPECT_GT(dead_reckoning_of_a_restart(2.5), 2.5);
+TEST_F(MapperBeforeAWall, RelocalizesAsFarOffAsDeadReckoningCanBeByTheTimeAfterWhichALossIsReported) {
+  for (const auto& [lost_after_s, relocalized] : {std::pair(2.5, false), {6.0, true}}) {
+    Mapper mapper{MapConfig{}, lost_after_s};
+    mapper.restart(SE3(), now(0.0, SE3()));
+    add_keyframe(mapper, 5.0, SE3());
+    const SE3 off = shift(0.0, 3.0, 0.0);
+    mapper.restart(SE3(), now(6.0, off));
+    EXPECT_FALSE(localize(mapper, 6.1, off, SE3()));
+    EXPECT_EQ(localize(mapper, 6.4, off, SE3()), relocalized) << lost_after_s;
+  }
 }
 
 }  // namespace

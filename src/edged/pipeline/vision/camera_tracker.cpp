@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "edged/pipeline/tuning.hpp"
+
 namespace edged {
 
 void HealthConfig::visit(ConfigFields& fields) {
@@ -16,28 +18,28 @@ void HealthConfig::visit(ConfigFields& fields) {
       {"", 0, 1000, "Number of features kept in event frames while the frames have all of theirs (fused mode)."});
 }
 
-Eigen::Matrix3d Channel::since_keyframe(const SE3& T_O_B) const {
+Eigen::Matrix3d CameraTracker::since_keyframe(const SE3& T_O_B) const {
   const Eigen::Quaterniond R_Bkf_B = T_O_Bkeyframe.rotation().conjugate() * T_O_B.rotation();
   const Eigen::Matrix3d R_B_C = camera.T_B_C.R();
   return R_B_C.transpose() * R_Bkf_B.toRotationMatrix() * R_B_C;
 }
 
-void Channel::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction,
-                    const std::optional<LampCycle>& lamp) {
+void CameraTracker::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction,
+                          const std::optional<LampCycle>& lamp) {
   prediction.T_cur_prev = T_O_C(T_O_B).inverse() * T_O_C(T_O_Blast);
   prediction.offset_px = alignment_px_;
-  const TrackSummary summary = tracker.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
+  const TrackSummary summary = features.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
   if (any_image_ && lamp) {
-    shift_.update(lamp->phase(t), t - last_image_, tracker.tracks(), prediction);
+    shift_.update(lamp->phase(t), t - last_image_, features.tracks(), prediction);
   } else {
     shift_.reset();
   }
   align(summary);
-  weigh(summary, t);
+  update_survival_rate(summary, t);
   any_image_ = true;
 }
 
-void Channel::align(const TrackSummary& summary) {
+void CameraTracker::align(const TrackSummary& summary) {
   if (alignment_.gain <= 0.0) return;
   // Without a usable prediction the old correction decays.
   const bool measured = summary.tracked > 0 && !summary.prediction_failed;
@@ -45,10 +47,10 @@ void Channel::align(const TrackSummary& summary) {
       measured ? Eigen::Vector2d(summary.median_innovation_px + alignment_px_) : Eigen::Vector2d::Zero();
   alignment_px_ += alignment_.gain * (newest - alignment_px_);
   const double length = alignment_px_.norm();
-  if (length > alignment_.max_px) alignment_px_ *= alignment_.max_px / length;
+  if (length > kPipelineTuning.max_alignment_px) alignment_px_ *= kPipelineTuning.max_alignment_px / length;
 }
 
-void Channel::weigh(const TrackSummary& summary, Timestamp t) {
+void CameraTracker::update_survival_rate(const TrackSummary& summary, Timestamp t) {
   if (any_image_ && summary.before > 0) {
     const double share = static_cast<double>(summary.tracked) / summary.before;
     const double gain = 1.0 - std::exp(-to_seconds(t - last_image_) / health_.time_constant_s);
@@ -57,38 +59,38 @@ void Channel::weigh(const TrackSummary& summary, Timestamp t) {
   last_image_ = t;
 }
 
-CameraObservations Channel::observations() const {
-  CameraObservations observations = tracker.observations();
-  shift_.correct(observations, tracker.tracks());
+CameraObservations CameraTracker::observations() const {
+  CameraObservations observations = features.observations();
+  shift_.correct(observations, features.tracks());
   if (survival_rate_ < health_.min_survival_rate) observations.features.clear();
   for (FeatureObservation& observation : observations.features) observation.sigma /= survival_rate_;
   return observations;
 }
 
-void Channel::reject(const SE3& T_O_B, bool trust_gyro) {
+void CameraTracker::reject(const SE3& T_O_B, bool trust_gyro) {
   const auto rotation = trust_gyro ? std::optional(since_keyframe(T_O_B)) : std::nullopt;
-  tracker.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
+  features.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
-void Channel::mark_keyframe(const SE3& T_O_B) {
-  tracker.mark_keyframe();
+void CameraTracker::mark_keyframe(const SE3& T_O_B) {
+  features.mark_keyframe();
   T_O_Bkeyframe = T_O_B;
 }
 
-void Channel::settle(const SE3& T_O_B, bool keyframe) {
+void CameraTracker::set_pose(const SE3& T_O_B, bool keyframe) {
   T_O_Blast = T_O_B;
   if (keyframe) T_O_Bkeyframe = T_O_B;
 }
 
-void Channel::move(const SE3& T_new_old) {
+void CameraTracker::move(const SE3& T_new_old) {
   T_O_Blast = T_new_old * T_O_Blast;
   T_O_Bkeyframe = T_new_old * T_O_Bkeyframe;
 }
 
-const Channel* leading_channel(std::span<const ChannelView> views) {
-  const Channel* leading = nullptr;
-  for (const ChannelView& view : views) {
-    if (leading == nullptr || view.channel->carried() >= leading->carried()) leading = view.channel;
+const CameraTracker* leading_tracker(std::span<const CameraImage> views) {
+  const CameraTracker* leading = nullptr;
+  for (const CameraImage& view : views) {
+    if (leading == nullptr || view.tracker->effective_tracks() >= leading->effective_tracks()) leading = view.tracker;
   }
   return leading;
 }

@@ -16,16 +16,16 @@
 
 namespace edged {
 
-class Channel {
+class CameraTracker {
  public:
   /// image_model: camera model of its images (the ideal pinhole for undistorted event frames).
-  Channel(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
-          const AlignmentConfig& alignment, const HealthConfig& health)
-      : camera(rig_camera), tracker(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
+  CameraTracker(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
+                const AlignmentConfig& alignment, const HealthConfig& health)
+      : camera(rig_camera), features(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
 
   SE3 T_O_C(const SE3& T_O_B) const { return T_O_B * camera.T_B_C; }
   /// The body at the instant of the image of a packet: at its time, plus the residual time offset of the camera.
-  SE3 T_O_B_now(const BodyMotion& body) const { return body.moved_on(camera.time_offset); }
+  SE3 T_O_B_now(const ImuPropagator& body) const { return body.extrapolate(camera.time_offset); }
   /// Rotation of the camera from now to the last keyframe, R_Ckf_C.
   Eigen::Matrix3d since_keyframe(const SE3& T_O_B) const;
 
@@ -41,7 +41,7 @@ class Channel {
   /// Track survival rate: running mean of the share of tracks that survive an image, 0 .. 1.
   double survival_rate() const { return survival_rate_; }
   /// Effective number of tracks: the number that likely survives the next image.
-  double carried() const { return survival_rate_ * static_cast<double>(tracker.tracks().size()); }
+  double effective_tracks() const { return survival_rate_ * static_cast<double>(features.tracks().size()); }
   /// The observations at the stamp of the present image, with a sigma that grows as fewer tracks survive; none when the
   /// camera is ignored.
   CameraObservations observations() const;
@@ -52,19 +52,19 @@ class Channel {
     return any_image_ ? to_seconds(t - last_image_) : std::numeric_limits<double>::infinity();
   }
   /// Sets the estimated pose of the body at the present image (and keyframe).
-  void settle(const SE3& T_O_B, bool keyframe);
+  void set_pose(const SE3& T_O_B, bool keyframe);
   /// Transforms all stored poses to another odometry frame.
   void move(const SE3& T_new_old);
 
   RigCamera camera;  ///< with the calibration of the estimator
-  FeatureTracker tracker;
+  FeatureTracker features;
   bool only_one_of_its_kind = false;  ///< in the run
   SE3 T_O_Blast;                      ///< at the last image
   SE3 T_O_Bkeyframe;                  ///< at the last keyframe
 
  private:
   void align(const TrackSummary& summary);
-  void weigh(const TrackSummary& summary, Timestamp t);
+  void update_survival_rate(const TrackSummary& summary, Timestamp t);
 
   AlignmentConfig alignment_;
   HealthConfig health_;
@@ -78,15 +78,16 @@ class Channel {
 };
 
 /// A camera with its image of a packet: features are tracked on `track` and detected on `detect`.
-struct ChannelView {
-  Channel* channel;
+struct CameraImage {
+  CameraTracker* tracker;
   cv::Mat track, detect;
-  cv::Mat increments = {};  ///< of an event frame (EventImage)
+  cv::Mat increments = {};  ///< event frames only (EventImage)
   Duration covered = {};
-  cv::Mat as_events = {};  ///< of a frame in a keyframe: as event cameras behind other lenses would see its scene
+  cv::Mat as_events =
+      {};  ///< keyframes of frame cameras only: as event cameras behind other lenses would see the scene
 };
 
 /// The camera with most tracks, the last of equals (frames); null without any.
-const Channel* leading_channel(std::span<const ChannelView> views);
+const CameraTracker* leading_tracker(std::span<const CameraImage> views);
 
 }  // namespace edged

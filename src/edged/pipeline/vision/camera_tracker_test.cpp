@@ -16,16 +16,16 @@ class ChannelHealth : public testing::Test {
     camera_.modality = Modality::Frames;
   }
 
-  Channel start() {
-    Channel channel(camera_, scene_.camera(), {}, {}, {});
-    show(channel, scene_.image({}), 0);
-    channel.tracker.detect(scene_.image({}), next_id_, 1000);
-    channel.mark_keyframe({});
-    return channel;
+  CameraTracker start() {
+    CameraTracker tracker(camera_, scene_.camera(), {}, {}, {});
+    show(tracker, scene_.image({}), 0);
+    tracker.features.detect(scene_.image({}), next_id_, 1000);
+    tracker.mark_keyframe({});
+    return tracker;
   }
 
-  static void show(Channel& channel, const cv::Mat& image, int index) {
-    channel.track(image, timestamp_from_ns(40'000'000LL * index), {}, {}, std::nullopt);
+  static void show(CameraTracker& tracker, const cv::Mat& image, int index) {
+    tracker.track(image, timestamp_from_ns(40'000'000LL * index), {}, {}, std::nullopt);
   }
 
   /// An image of new noise at every call.
@@ -42,67 +42,67 @@ class ChannelHealth : public testing::Test {
 };
 
 TEST_F(ChannelHealth, ObservationsOfTracksThatSurviveKeepTheirSigma) {
-  Channel channel = start();
-  for (int i = 1; i <= 10; ++i) show(channel, scene_.image({}), i);
-  EXPECT_DOUBLE_EQ(channel.survival_rate(), 1.0);
-  const CameraObservations raw = channel.tracker.observations(), weighed = channel.observations();
+  CameraTracker tracker = start();
+  for (int i = 1; i <= 10; ++i) show(tracker, scene_.image({}), i);
+  EXPECT_DOUBLE_EQ(tracker.survival_rate(), 1.0);
+  const CameraObservations raw = tracker.features.observations(), weighed = tracker.observations();
   ASSERT_GT(weighed.features.size(), 50U);
   EXPECT_DOUBLE_EQ(weighed.features[0].sigma, raw.features[0].sigma);
 }
 
 TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
-  Channel channel = start();
-  show(channel, darkness(), 1);
-  const double after_one = channel.survival_rate();
+  CameraTracker tracker = start();
+  show(tracker, darkness(), 1);
+  const double after_one = tracker.survival_rate();
   EXPECT_LT(after_one, 1.0);
   for (int i = 2; i <= 30; ++i) {
-    channel.tracker.detect(darkness(), next_id_, 1000);
-    channel.mark_keyframe({});
-    show(channel, darkness(), i);
+    tracker.features.detect(darkness(), next_id_, 1000);
+    tracker.mark_keyframe({});
+    show(tracker, darkness(), i);
   }
-  EXPECT_LT(channel.survival_rate(), HealthConfig{}.min_survival_rate);
-  EXPECT_TRUE(channel.observations().features.empty());
+  EXPECT_LT(tracker.survival_rate(), HealthConfig{}.min_survival_rate);
+  EXPECT_TRUE(tracker.observations().features.empty());
 }
 
 TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
-  Channel channel = start();
+  CameraTracker tracker = start();
   for (int i = 1; i <= 30; ++i) {
-    channel.tracker.detect(darkness(), next_id_, 1000);
-    channel.mark_keyframe({});
-    show(channel, darkness(), i);
+    tracker.features.detect(darkness(), next_id_, 1000);
+    tracker.mark_keyframe({});
+    show(tracker, darkness(), i);
   }
   for (int i = 31; i <= 80; ++i) {
-    show(channel, scene_.image({}), i);
-    channel.tracker.detect(scene_.image({}), next_id_, 1000);
-    channel.mark_keyframe({});
+    show(tracker, scene_.image({}), i);
+    tracker.features.detect(scene_.image({}), next_id_, 1000);
+    tracker.mark_keyframe({});
   }
-  EXPECT_GT(channel.survival_rate(), 0.95);
-  EXPECT_FALSE(channel.observations().features.empty());
+  EXPECT_GT(tracker.survival_rate(), 0.95);
+  EXPECT_FALSE(tracker.observations().features.empty());
 }
 
 TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
-  Channel channel(camera_, scene_.camera(), {}, {}, {});
-  show(channel, scene_.image({}), 0);
-  channel.tracker.detect(scene_.image({}), next_id_, 25);
-  channel.mark_keyframe({});
-  EXPECT_EQ(channel.tracker.tracks().size(), 25U);
-  channel.tracker.detect(scene_.image({}), next_id_, 10);
-  channel.mark_keyframe({});
-  EXPECT_EQ(channel.tracker.tracks().size(), 25U) << "live tracks stay";
+  CameraTracker tracker(camera_, scene_.camera(), {}, {}, {});
+  show(tracker, scene_.image({}), 0);
+  tracker.features.detect(scene_.image({}), next_id_, 25);
+  tracker.mark_keyframe({});
+  EXPECT_EQ(tracker.features.tracks().size(), 25U);
+  tracker.features.detect(scene_.image({}), next_id_, 10);
+  tracker.mark_keyframe({});
+  EXPECT_EQ(tracker.features.tracks().size(), 25U) << "live tracks stay";
 }
 
 TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
   const cv::Mat image = scene_.image({});
-  Channel few(camera_, scene_.camera(), {}, {}, {}), many = few;
-  for (Channel* channel : {&few, &many}) show(*channel, image, 0);
-  few.tracker.detect(image, next_id_, 40);
-  many.tracker.detect(image, next_id_, 1000);
-  const std::vector<ChannelView> views = {{&many, image, image}, {&few, image, image}};
-  EXPECT_EQ(leading_channel({}), nullptr);
-  EXPECT_EQ(leading_channel(views), &many);
-  EXPECT_EQ(leading_channel(std::span(views).last(1)), &few) << "the other one has no image now";
+  CameraTracker few(camera_, scene_.camera(), {}, {}, {}), many = few;
+  for (CameraTracker* tracker : {&few, &many}) show(*tracker, image, 0);
+  few.features.detect(image, next_id_, 40);
+  many.features.detect(image, next_id_, 1000);
+  const std::vector<CameraImage> views = {{&many, image, image}, {&few, image, image}};
+  EXPECT_EQ(leading_tracker({}), nullptr);
+  EXPECT_EQ(leading_tracker(views), &many);
+  EXPECT_EQ(leading_tracker(std::span(views).last(1)), &few) << "the other one has no image now";
   show(many, darkness(), 1);
-  EXPECT_EQ(leading_channel(views), &few) << "the other one has lost its tracks";
+  EXPECT_EQ(leading_tracker(views), &few) << "the other one has lost its tracks";
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ namespace edged {
 struct EventImage {
   cv::Mat frame;          ///< motion-compensated, CV_8UC1, undistorted
   bool noise = false;     ///< it shows noise of the pixels alone: consecutive frames share events, and noise is tracked
-  cv::Mat increments;     ///< of the brightness (EventFrame)
+  cv::Mat increments;     ///< changes of the brightness (EventFrame)
   Duration covered = {};  ///< from the first to the last of its events
-  cv::Mat track, detect;  ///< the same, or enhanced (Algorithm 1): features are tracked on one, detected on the other
+  cv::Mat track, detect;  ///< `frame`, or enhanced (Algorithm 1): features are tracked on one, detected on the other
   std::size_t rendered = 0;  ///< events that it is rendered from, the newest of the packet
 };
 
@@ -35,16 +35,17 @@ class EventView {
   EventView(const CameraModel& camera, const OdometryConfig& config);
 
   /// Fewer events than any motion would cause.
-  bool quiet(const PacketEvents& events) const;
+  bool is_static(const PacketEvents& events) const;
   /// The events of the window for a frame: fewer in fast translation, where the warp blurs points away from the one
   /// scene depth (z, [m]). Rotation does not matter, as its warp does not depend on depth. body: predicted, at the time
-  /// of the packet. Empty if there are too few. thin: a wide sensor may use a part of its events, with a noisier frame.
-  EventsToRender rendered_events(const PacketEvents& events, const BodyMotion& body, double scene_depth,
-                                 bool thin) const;
+  /// of the packet. Empty if there are too few. subsample: a wide sensor may use a part of its events, with a noisier
+  /// frame.
+  EventsToRender rendered_events(const PacketEvents& events, const ImuPropagator& body, double scene_depth,
+                                 bool subsample) const;
   /// rendered: not empty; camera: with online calibration; depths: one per event in the same order, null: scene_depth
   /// for all.
-  EventImage render(const EventsToRender& rendered, const RigCamera& camera, const BodyMotion& body, double scene_depth,
-                    const DepthGrid* depths);
+  EventImage render(const EventsToRender& rendered, const RigCamera& camera, const ImuPropagator& body,
+                    double scene_depth, const DepthGrid* depths);
 
   /// The undistorted camera of the images.
   const CameraModel& ideal() const { return renderer_.camera(); }
@@ -55,10 +56,10 @@ class EventView {
   EventFrameRenderer renderer_;
   EnhanceConfig enhance_;
   bool enhance_track_, enhance_detect_;
-  double quiet_rate_per_pixel_, max_travel_px_, max_age_s_;
-  std::size_t least_events_;
-  int thinned_every_;
-  std::vector<Event> thinned_;  ///< kept to reuse its memory
+  double max_age_s_;
+  std::size_t min_events_;
+  int subsampling_;
+  std::vector<Event> subsampled_;  ///< kept to reuse its memory
 };
 
 }  // namespace edged

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "edged/frontend/test_scene.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -14,14 +15,14 @@ namespace {
 constexpr double kSpan_s = 0.1, kDepth_m = 2.0;
 constexpr int kPixels = 240 * 180;
 
-/// Events of a packet at 0.1 s, spread evenly over the time before and over the image.
-PacketEvents packet_of(std::size_t events) {
+/// Events of a packet at 0.1 s, spread evenly over the time before and over an image of that width.
+PacketEvents packet_of(std::size_t events, std::size_t width = 240) {
   PacketEvents packet;
   for (std::size_t i = 0; i < events; ++i) {
     const double t_s = kSpan_s * static_cast<double>(i + 1) / static_cast<double>(events);
     const std::size_t place = i * 0x9e3779b97f4a7c15U >> 24U;  // pseudo-random
-    packet.events.push_back({timestamp_from_seconds(t_s), static_cast<std::uint16_t>(place % 240),
-                             static_cast<std::uint16_t>(place / 240 % 180), true});
+    packet.events.push_back({timestamp_from_seconds(t_s), static_cast<std::uint16_t>(place % width),
+                             static_cast<std::uint16_t>(place / width % (kPixels / width)), true});
   }
   packet.window_events = packet.new_events = events;
   packet.event_rate_hz = static_cast<double>(events) / kSpan_s;
@@ -37,8 +38,8 @@ class EventViewTest : public testing::Test {
   }
 
   /// A body that moves straight at that speed until the packet's time.
-  static BodyMotion moving(double speed) {
-    BodyMotion body({}, duration_from_seconds(1.0));
+  static ImuPropagator moving(double speed) {
+    ImuPropagator body({}, duration_from_seconds(1.0));
     OdomState state;
     state.v_O = {speed, 0, 0};
     body.correct(state);
@@ -48,11 +49,11 @@ class EventViewTest : public testing::Test {
     return body;
   }
 
-  EventImage draw(std::size_t events, double speed, bool thin = false) {
+  EventImage draw(std::size_t events, double speed, bool subsample = false) {
     EventView view(camera_.model, config_);
-    const PacketEvents packet = packet_of(events);
-    const BodyMotion body = moving(speed);
-    const EventsToRender rendered = view.rendered_events(packet, body, kDepth_m, thin);
+    const PacketEvents packet = packet_of(events, static_cast<std::size_t>(camera_.model.width()));
+    const ImuPropagator body = moving(speed);
+    const EventsToRender rendered = view.rendered_events(packet, body, kDepth_m, subsample);
     return rendered.events.empty() ? EventImage{} : view.render(rendered, camera_, body, kDepth_m, nullptr);
   }
 
@@ -76,11 +77,10 @@ TEST_F(EventViewTest, ReachesBackUntilTheSceneHasMovedFarEnough) {
   EXPECT_EQ(static_cast<double>(draw(all, 200.0).rendered), least) << "never fewer than an image needs";
 }
 
-TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereToldToThinAndEachForN) {
-  const EventImage all = draw(20'000, 0.0), thinned_narrow = draw(20'000, 0.0, true);
-  EXPECT_EQ(cv::norm(all.frame, thinned_narrow.frame), 0.0) << "240 px are not wide";
-  config_.thin_width_px = 70;
-  EXPECT_EQ(cv::norm(all.frame, draw(20'000, 0.0).frame), 0.0) << "not enabled";
+TEST_F(EventViewTest, DrawsEachNthEventOfAWideSensorWhereAskedToAndEachForN) {
+  EXPECT_EQ(cv::norm(draw(20'000, 0.0).frame, draw(20'000, 0.0, true).frame), 0.0) << "240 px are not wide";
+  camera_.model = CameraModel(1200, kPixels / 1200, 200, 200, 600, 18, DistortionModel::None);
+  const EventImage all = draw(20'000, 0.0);
   const EventImage thinned = draw(20'000, 0.0, true);
   EXPECT_EQ(thinned.rendered, all.rendered) << "it reaches back as far";
   cv::Scalar mean, sigma, thinned_mean, thinned_sigma;
@@ -100,11 +100,11 @@ TEST_F(EventViewTest, EnhancesOnlyWhereAskedTo) {
   EXPECT_NE(enhanced.detect.data, enhanced.frame.data);
 }
 
-TEST_F(EventViewTest, IsQuietWhereNothingMoves) {
+TEST_F(EventViewTest, IsStaticWhereNothingMoves) {
   const EventView view(camera_.model, config_);
-  const double limit = config_.quiet_rate_per_pixel * kPixels * kSpan_s;
-  EXPECT_TRUE(view.quiet(packet_of(static_cast<std::size_t>(0.9 * limit))));
-  EXPECT_FALSE(view.quiet(packet_of(static_cast<std::size_t>(1.1 * limit))));
+  const double limit = kPipelineTuning.static_rate_per_pixel * kPixels * kSpan_s;
+  EXPECT_TRUE(view.is_static(packet_of(static_cast<std::size_t>(0.9 * limit))));
+  EXPECT_FALSE(view.is_static(packet_of(static_cast<std::size_t>(1.1 * limit))));
 }
 
 }  // namespace

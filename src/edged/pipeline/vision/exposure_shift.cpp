@@ -9,15 +9,12 @@
 #include <utility>
 
 #include "edged/core/statistics.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
 namespace {
 
-constexpr std::size_t kFewestTracks = 8;
-constexpr double kMemory_s = 5.0;
-constexpr double kUsual_s = 1e-3;  // standard deviation of a coefficient before anything is measured
-// On the unit plane, of the common displacement of all features: 0.03 px of a usual lens.
-constexpr double kSigma = 1.5e-4;
+constexpr double kVariance_s2 = kPipelineTuning.exposure_prior_s * kPipelineTuning.exposure_prior_s;
 
 /// How far the image is ahead of its prediction, as a time, and the speed of the features [1/s].
 struct Lead {
@@ -39,7 +36,7 @@ std::optional<Lead> lead_of(const std::vector<Track>& tracks, const TrackPredict
     const double squared = std::max(velocity.squaredNorm(), 1e-12);
     features.push_back({std::sqrt(squared), velocity.dot(track.point - expected) / squared});
   }
-  if (features.size() < kFewestTracks) return std::nullopt;
+  if (features.size() < kPipelineTuning.exposure_min_features) return std::nullopt;
   std::vector<double> speeds, leads;
   for (const Feature& feature : features) speeds.push_back(feature.speed);
   const double speed = median(std::move(speeds));
@@ -54,13 +51,14 @@ void ExposureShift::update(double phase, Duration since_last, const std::vector<
                            const TrackPrediction& prediction) {
   const Eigen::Vector2d wave(std::cos(phase), std::sin(phase));
   since_last_s_ = std::max(to_seconds(since_last), 1e-3);
-  if (!any_) information_ = Eigen::Matrix2d::Identity() / (kUsual_s * kUsual_s);
+  if (!any_) information_ = Eigen::Matrix2d::Identity() / kVariance_s2;
   // The features of the image before were shifted, too.
   if (const auto lead = any_ ? lead_of(tracks, prediction, since_last_s_) : std::nullopt) {
     const Eigen::Vector2d change = wave - wave_;
-    const double weight = lead->speed * lead->speed / (kSigma * kSigma);
-    const double kept = std::exp(-since_last_s_ / kMemory_s);
-    const Eigen::Matrix2d prior = (1.0 - kept) * Eigen::Matrix2d::Identity() / (kUsual_s * kUsual_s);
+    const double weight =
+        lead->speed * lead->speed / (kPipelineTuning.exposure_motion_sigma * kPipelineTuning.exposure_motion_sigma);
+    const double kept = std::exp(-since_last_s_ / kPipelineTuning.exposure_memory_s);
+    const Eigen::Matrix2d prior = (1.0 - kept) * Eigen::Matrix2d::Identity() / kVariance_s2;
     information_ = kept * information_ + prior + weight * change * change.transpose();
     weighted_ = kept * weighted_ + weight * lead->seconds * change;
   }

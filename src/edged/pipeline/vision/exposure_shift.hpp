@@ -20,10 +20,10 @@ class ExposureShift {
   /// phase: of the lamp at the stamp of the image [rad]; since_last: from the image before; tracks: into this image;
   /// prediction: of them.
   void update(double phase, Duration since_last, const std::vector<Track>& tracks, const TrackPrediction& prediction);
-  /// There is no flicker.
+  /// No lamp flickers.
   void reset() { *this = {}; }
 
-  /// Of the newest image [s]: later, if positive.
+  /// Shift of the newest image [s]: later, if positive.
   double seconds() const { return shift_s_; }
   /// Moves the observations of the newest image to its stamp. tracks: of the observations, in their order.
   void correct(CameraObservations& observations, const std::vector<Track>& tracks) const;

@@ -3,14 +3,9 @@
 #include "edged/pipeline/vision/scene_depth.hpp"
 
 #include "edged/depth/make_depth_prior.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
-namespace {
-
-constexpr Duration kFresh = std::chrono::milliseconds(500);  // a held depth serves the warp, but is no measurement
-
-}  // namespace
-
 SceneDepth::SceneDepth(const DepthConfig& config, const RigCamera& camera, bool for_factor, Inference inference)
     : constant_m_(config.constant_m),
       camera_(camera.name),
@@ -37,7 +32,7 @@ double SceneDepth::at(Timestamp t) const {
 
 std::optional<RegionDepth> SceneDepth::for_factor(Timestamp t) const {
   const std::optional<DepthEstimate> d = factor_source_ ? factor_source_->at(t) : std::nullopt;
-  if (!d || t - d->t > kFresh) return std::nullopt;
+  if (!d || t - d->t > kPipelineTuning.max_depth_age) return std::nullopt;
   return RegionDepth{camera_, region_.low, region_.high, d->depth_m, d->sigma_ln, d->spread_ln};
 }
 

@@ -16,13 +16,13 @@ namespace edged {
 struct TrackedImage {
   std::string camera;
   CameraModel
-      model;  ///< of the image: the ideal pinhole for undistorted event frames; the map's with online calibration
+      model;  ///< lens of the image: the ideal pinhole for undistorted event frames; the map's with online calibration
   cv::Mat image = {};              ///< that features were tracked on; empty: the packet has none of this camera
   std::vector<Track> tracks = {};  ///< the live ones by id, in the newest image
   double survival_rate = 1.0;      ///< share of tracks that survive an image, 0 .. 1
 
   /// Effective number of tracks: the number that likely survives the next image.
-  double carried() const { return survival_rate * static_cast<double>(tracks.size()); }
+  double effective_tracks() const { return survival_rate * static_cast<double>(tracks.size()); }
 };
 
 /// An image of the packet, at the pose of its camera.

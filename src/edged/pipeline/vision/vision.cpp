@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "edged/events/expected_frame.hpp"
+#include "edged/pipeline/tuning.hpp"
 
 namespace edged {
 namespace {
-
-/// After this time without a frame, event frames keep all their features.
-constexpr Duration kFramesMissing = std::chrono::milliseconds(300);
 
 /// The features of one of several cameras of a kind, whose budget is a third larger than that of one: more views of the
 /// same scene should not cost much more, but observe less of it with half of the features each.
@@ -30,25 +28,25 @@ Vision::Vision(const Rig& cameras, const OdometryConfig& config, Inference infer
       low_light_.emplace_back(config_.low_light);
     }
   }
-  make_channels();
+  make_trackers();
 }
 
-void Vision::make_channels() {
-  channels_.clear();
+void Vision::make_trackers() {
+  trackers_.clear();
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
-      const CameraModel& ideal = event_views_[channels_.size()].ideal();
-      channels_.emplace_back(camera, ideal, config_.event_tracker, config_.alignment, config_.health);
+      const CameraModel& ideal = event_views_[trackers_.size()].ideal();
+      trackers_.emplace_back(camera, ideal, config_.event_tracker, config_.alignment, config_.health);
     } else {
-      channels_.emplace_back(camera, camera.model, config_.frame_tracker, AlignmentConfig{}, config_.health);
+      trackers_.emplace_back(camera, camera.model, config_.frame_tracker, AlignmentConfig{}, config_.health);
     }
-    channels_.back().only_one_of_its_kind =
+    trackers_.back().only_one_of_its_kind =
         std::ranges::count(rig_.cameras, camera.modality, &RigCamera::modality) == 1;
   }
 }
 
-void Vision::begin_time() {
-  make_channels();
+void Vision::begin_epoch() {
+  make_trackers();
   depth_ = fresh_depth();
   last_keyframe_.reset();
   last_frame_.reset();
@@ -63,47 +61,47 @@ VisionOutput Vision::process(const VisionInput& input) {
   VisionOutput output;
   output.scene_depth = measure_depth(packet);
   output.event_images = render(input, output.scene_depth);
-  std::vector<ChannelView> views = views_of(packet, output.event_images);
-  for (const ChannelView& view : views) track(view, input, output.scene_depth);
+  std::vector<CameraImage> views = views_of(packet, output.event_images);
+  for (const CameraImage& view : views) track(view, input, output.scene_depth);
   reject(views, input.body);
   output.keyframe = is_keyframe(input, views);
   if (output.keyframe) mark_keyframe(input, views, output.scene_depth);
-  for (const ChannelView& view : views) {
-    view.channel->settle(view.channel->T_O_B_now(input.body), output.keyframe);
-    output.observations.push_back(view.channel->observations());
+  for (const CameraImage& view : views) {
+    view.tracker->set_pose(view.tracker->T_O_B_now(input.body), output.keyframe);
+    output.observations.push_back(view.tracker->observations());
   }
-  if (landmarks_) discount_shared(output.observations, views, config_.stereo);  // a start takes three images only
+  if (landmarks_) inflate_correlated(output.observations, views, config_.stereo);  // a start takes three images only
   output.images = images_of(views);
-  output.events_quiet = is_quiet(packet, output.event_images);
+  output.events_static = is_static(packet, output.event_images);
   output.depth = depth_.for_factor(packet.t);
   return output;
 }
 
-void Vision::correct(const VisionCorrection& correction, const BodyMotion& body) {
+void Vision::correct(const VisionCorrection& correction, const ImuPropagator& body) {
   const Timestamp t = body.now().t;
-  for (Channel& channel : channels_) channel.tracker.remove(correction.outliers);
+  for (CameraTracker& tracker : trackers_) tracker.features.remove(correction.outliers);
   landmarks_ = correction.landmarks;
   provisional_ = correction.provisional;
   if (!landmarks_) return;
   rig_.cameras = correction.cameras;
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    Channel& channel = channels_[i];
-    if (correction.T_new_old) channel.move(*correction.T_new_old);
-    channel.camera = rig_.cameras[i];
-    if (channel.has_image_of(t)) channel.settle(channel.T_O_B_now(body), last_keyframe_ == t);
+  for (std::size_t i = 0; i < trackers_.size(); ++i) {
+    CameraTracker& tracker = trackers_[i];
+    if (correction.T_new_old) tracker.move(*correction.T_new_old);
+    tracker.camera = rig_.cameras[i];
+    if (tracker.has_image_of(t)) tracker.set_pose(tracker.T_O_B_now(body), last_keyframe_ == t);
   }
-  depth_.add_landmarks(t, landmarks_seen_by(channels_.front(), body));
+  depth_.add_landmarks(t, landmarks_seen_by(trackers_.front(), body));
   if (correction.ended) landmarks_.reset();
 }
 
 std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& output) const {
   std::vector<CameraStep> cameras;
-  cameras.reserve(channels_.size());  // OpenCV's images may throw when moved: a reallocation would copy the events
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const Channel& channel = channels_[i];
-    CameraStep camera{.name = channel.camera.name, .modality = channel.camera.modality};
-    camera.tracks = channel.tracker.tracks();
-    camera.survival_rate = channel.survival_rate();
+  cameras.reserve(trackers_.size());  // OpenCV's images may throw when moved: a reallocation would copy the events
+  for (std::size_t i = 0; i < trackers_.size(); ++i) {
+    const CameraTracker& tracker = trackers_[i];
+    CameraStep camera{.name = tracker.camera.name, .modality = tracker.camera.modality};
+    camera.tracks = tracker.features.tracks();
+    camera.survival_rate = tracker.survival_rate();
     if (i < event_views_.size()) {
       camera.image = output.event_images[i].frame;
       camera.rendered = output.event_images[i].rendered;
@@ -132,22 +130,22 @@ std::vector<EventImage> Vision::render(const VisionInput& input, double scene_de
     const auto timer = timings_->measure("event_frame");
     EventView& view = event_views_[i];
     const EventsToRender events =
-        view.rendered_events(input.packet.events[i], input.body, scene_depth, frames_carry(input.body.now().t));
+        view.rendered_events(input.packet.events[i], input.body, scene_depth, frames_sufficient(input.body.now().t));
     if (events.events.empty()) continue;
     const std::optional<DepthGrid> depths = event_depths(i, input.body, scene_depth);
-    images[i] = view.render(events, channels_[i].camera, input.body, scene_depth, depths ? &*depths : nullptr);
+    images[i] = view.render(events, trackers_[i].camera, input.body, scene_depth, depths ? &*depths : nullptr);
   }
   return images;
 }
 
 /// The landmarks of all cameras, in that one now.
-std::vector<SeenDepth> Vision::landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const {
+std::vector<SeenDepth> Vision::landmarks_seen_by(const CameraTracker& viewer, const ImuPropagator& body) const {
   std::vector<SeenDepth> seen;
   const SE3 T_C_O = viewer.T_O_C(viewer.T_O_B_now(body)).inverse();
-  for (const Channel& channel : channels_) {
-    const SE3 T_C_last = T_C_O * channel.T_O_C(channel.T_O_Blast);
-    for (const Track& track : channel.tracker.tracks()) {
-      const std::optional<double> depth = landmark_depth(channel, track.id);
+  for (const CameraTracker& tracker : trackers_) {
+    const SE3 T_C_last = T_C_O * tracker.T_O_C(tracker.T_O_Blast);
+    for (const Track& track : tracker.features.tracks()) {
+      const std::optional<double> depth = landmark_depth(tracker, track.id);
       if (!depth) continue;
       const Eigen::Vector3d p_C = T_C_last * (*depth * track.point.homogeneous());
       if (p_C.z() > 0.0) seen.push_back({p_C.hnormalized(), p_C.z()});
@@ -157,60 +155,60 @@ std::vector<SeenDepth> Vision::landmarks_seen_by(const Channel& viewer, const Bo
 }
 
 /// One depth per event in the same order; nothing if one depth serves for the whole scene, or no other is known.
-std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const BodyMotion& body, double scene_depth) const {
+std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const ImuPropagator& body, double scene_depth) const {
   if (config_.event_frame.depth != EventDepth::Landmarks || !landmarks_) return std::nullopt;
   const CameraModel& ideal = event_views_[camera].ideal();
   std::vector<DepthSample> samples;
-  for (const SeenDepth& seen : landmarks_seen_by(channels_[camera], body)) {
+  for (const SeenDepth& seen : landmarks_seen_by(trackers_[camera], body)) {
     const Eigen::Vector3d p_C = seen.depth_m * seen.point.homogeneous();
     if (const auto pixel = ideal.project(p_C)) samples.push_back({*pixel, seen.depth_m});
   }
-  return DepthGrid(ideal.width(), ideal.height(), config_.event_frame.depth_grid, samples, scene_depth);
+  return DepthGrid(ideal.width(), ideal.height(), DepthGridSettings{}, samples, scene_depth);
 }
 
 /// The cameras with an image in the packet.
-std::vector<ChannelView> Vision::views_of(const Packet& packet, std::span<const EventImage> event_images) {
-  std::vector<ChannelView> views;
+std::vector<CameraImage> Vision::views_of(const Packet& packet, std::span<const EventImage> event_images) {
+  std::vector<CameraImage> views;
   for (std::size_t i = 0; i < event_images.size(); ++i) {
     const EventImage& image = event_images[i];
     if (!image.frame.empty() && !image.noise)
-      views.push_back({&channels_[i], image.track, image.detect, image.increments, image.covered});
+      views.push_back({&trackers_[i], image.track, image.detect, image.increments, image.covered});
   }
-  for (std::size_t i = event_images.size(); i < channels_.size(); ++i) {
-    const Frame* frame = packet.find_frame(channels_[i].camera.name);
+  for (std::size_t i = event_images.size(); i < trackers_.size(); ++i) {
+    const Frame* frame = packet.find_frame(trackers_[i].camera.name);
     if (frame == nullptr) continue;
     const cv::Mat image = low_light_[i - event_images.size()](frame->image);
-    views.push_back({&channels_[i], image, image});
+    views.push_back({&trackers_[i], image, image});
     last_frame_ = packet.t;
   }
   return views;
 }
 
-void Vision::track(const ChannelView& view, const VisionInput& input, double scene_depth) {
-  Channel& channel = *view.channel;
-  const auto timer = timings_->measure(channel.camera.modality == Modality::Events ? "track_events" : "track_frames");
+void Vision::track(const CameraImage& view, const VisionInput& input, double scene_depth) {
+  CameraTracker& tracker = *view.tracker;
+  const auto timer = timings_->measure(tracker.camera.modality == Modality::Events ? "track_events" : "track_frames");
   TrackPrediction prediction;
   prediction.scene_depth = scene_depth;
-  prediction.depth = [&](FeatureId id) { return landmark_depth(channel, id); };
+  prediction.depth = [&](FeatureId id) { return landmark_depth(tracker, id); };
   // With one reference patch all errors of a track correlate, which the thresholds of initialization do not model: with
   // events alone 3 of 72 initializations have a wrong scale, 1 without.
   prediction.reference_patches = !provisional_;
-  prediction.increments = {view.increments, to_seconds(view.covered) / channel.since_last_image_s(input.packet.t)};
-  channel.track(view.track, input.packet.t, channel.T_O_B_now(input.body), std::move(prediction),
-                channel.camera.modality == Modality::Frames && landmarks_ ? input.packet.lamp() : std::nullopt);
+  prediction.increments = {view.increments, to_seconds(view.covered) / tracker.since_last_image_s(input.packet.t)};
+  tracker.track(view.track, input.packet.t, tracker.T_O_B_now(input.body), std::move(prediction),
+                tracker.camera.modality == Modality::Frames && landmarks_ ? input.packet.lamp() : std::nullopt);
 }
 
-void Vision::reject(std::span<const ChannelView> views, const BodyMotion& body) {
+void Vision::reject(std::span<const CameraImage> views, const ImuPropagator& body) {
   const auto timer = timings_->measure("reject");
   for (auto view = views.begin(); view != views.end(); ++view) {
     for (auto other = views.begin(); other != view; ++other) drop_mismatches(*other, *view, body, config_.stereo);
   }
-  for (const ChannelView& view : views) view.channel->reject(view.channel->T_O_B_now(body), !gyro_saturated_);
+  for (const CameraImage& view : views) view.tracker->reject(view.tracker->T_O_B_now(body), !gyro_saturated_);
 }
 
-bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const {
+bool Vision::is_keyframe(const VisionInput& input, std::span<const CameraImage> views) const {
   const Packet& packet = input.packet;
-  const Channel* leader = leading_channel(views);
+  const CameraTracker* leader = leading_tracker(views);
   if (leader == nullptr) return false;
   // With both cameras a keyframe waits for the next frame, so that both have it.
   const bool frame_due =
@@ -223,101 +221,102 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const ChannelView> 
   // Only the camera with most tracks: features on event frames drift and end earlier, and would cause keyframes that
   // good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(leader->T_O_B_now(input.body));
-  since.tracks = leader->tracker.since_keyframe(R_Ckf_C);
+  since.tracks = leader->features.since_keyframe(R_Ckf_C);
   since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
-  return keyframe_reason(since, config_.keyframes) != KeyframeReason::None;
+  return keyframe_due(since, config_.keyframes);
 }
 
-void Vision::mark_keyframe(const VisionInput& input, std::span<ChannelView> views, double scene_depth) {
+void Vision::mark_keyframe(const VisionInput& input, std::span<CameraImage> views, double scene_depth) {
   const auto timer = timings_->measure("detect");
   expect_events(views, input.body, scene_depth);
-  for (const ChannelView& to : views) {
-    for (const ChannelView& from : views) {
-      if (to.channel->camera.modality == Modality::Events && from.channel->camera.modality == Modality::Frames)
-        share(from, to, input.body);
+  for (const CameraImage& to : views) {
+    for (const CameraImage& from : views) {
+      if (to.tracker->camera.modality == Modality::Events && from.tracker->camera.modality == Modality::Frames)
+        match_across(from, to, input.body);
     }
   }
   for (auto view = views.begin(); view != views.end(); ++view) {
-    for (auto other = views.begin(); other != view; ++other) share(*other, *view, input.body);
-    view->channel->tracker.detect(view->detect, next_feature_, features_wanted(*view->channel, input.body.now().t));
-    for (auto other = views.begin(); other != view; ++other) share(*view, *other, input.body);
+    for (auto other = views.begin(); other != view; ++other) match_across(*other, *view, input.body);
+    view->tracker->features.detect(view->detect, next_feature_, features_wanted(*view->tracker, input.body.now().t));
+    for (auto other = views.begin(); other != view; ++other) match_across(*view, *other, input.body);
   }
-  for (const ChannelView& view : views) view.channel->mark_keyframe(view.channel->T_O_B_now(input.body));
+  for (const CameraImage& view : views) view.tracker->mark_keyframe(view.tracker->T_O_B_now(input.body));
   last_keyframe_ = input.packet.t;
   gyro_saturated_ = false;
 }
 
 /// Frames as the event cameras that can share features with them would see their scene. What these cameras follow
 /// already comes first: features of frames are more accurate than those that an event frame would get of its own.
-void Vision::expect_events(std::span<ChannelView> views, const BodyMotion& body, double scene_depth) const {
+void Vision::expect_events(std::span<CameraImage> views, const ImuPropagator& body, double scene_depth) const {
   constexpr Duration kSoon = std::chrono::milliseconds(5);
-  for (ChannelView& view : views) {
-    const Channel& channel = *view.channel;
-    if (channel.camera.modality != Modality::Frames) continue;
-    if (std::ranges::none_of(views, [&](const ChannelView& other) {
-          return other.channel->camera.modality == Modality::Events &&
-                 can_share(channel, *other.channel, config_.stereo);
+  for (CameraImage& view : views) {
+    const CameraTracker& tracker = *view.tracker;
+    if (tracker.camera.modality != Modality::Frames) continue;
+    if (std::ranges::none_of(views, [&](const CameraImage& other) {
+          return other.tracker->camera.modality == Modality::Events &&
+                 can_match(tracker, *other.tracker, config_.stereo);
         }))
       continue;
     std::optional<SE3> T_later_now;
     if (body.started())
-      T_later_now = channel.T_O_C(body.moved_on(channel.camera.time_offset + kSoon)).inverse() *
-                    channel.T_O_C(channel.T_O_B_now(body));
-    view.as_events = expected_event_frame(view.track, channel.tracker.camera(), T_later_now, scene_depth);
+      T_later_now = tracker.T_O_C(body.extrapolate(tracker.camera.time_offset + kSoon)).inverse() *
+                    tracker.T_O_C(tracker.T_O_B_now(body));
+    view.as_events = expected_event_frame(view.track, tracker.features.camera(), T_later_now, scene_depth);
   }
 }
 
-void Vision::share(const ChannelView& from, const ChannelView& to, const BodyMotion& body) {
-  const auto depth = [this](const Channel& channel, FeatureId id) { return landmark_depth(channel, id); };
-  share_features(from, to, body, depth, features_wanted(*to.channel, body.now().t), config_.stereo);
+void Vision::match_across(const CameraImage& from, const CameraImage& to, const ImuPropagator& body) {
+  const auto depth = [this](const CameraTracker& tracker, FeatureId id) { return landmark_depth(tracker, id); };
+  match_across_cameras(from, to, body, depth, features_wanted(*to.tracker, body.now().t), config_.stereo);
 }
 
-std::optional<double> Vision::landmark_depth(const Channel& channel, FeatureId id) const {
+std::optional<double> Vision::landmark_depth(const CameraTracker& tracker, FeatureId id) const {
   if (!landmarks_) return std::nullopt;
-  const auto& of_camera = landmarks_->at(static_cast<std::size_t>(&channel - channels_.data()));
+  const auto& of_camera = landmarks_->at(static_cast<std::size_t>(&tracker - trackers_.data()));
   const auto landmark = of_camera.find(id);
   return landmark == of_camera.end() ? std::nullopt : std::optional(landmark->second);
 }
 
-double Vision::carried_by_frames() const {
-  double carried = 0.0;
-  for (std::size_t i = event_views_.size(); i < channels_.size(); ++i) carried += channels_[i].carried();
-  return carried;
+double Vision::effective_frame_tracks() const {
+  double effective_tracks = 0.0;
+  for (std::size_t i = event_views_.size(); i < trackers_.size(); ++i)
+    effective_tracks += trackers_[i].effective_tracks();
+  return effective_tracks;
 }
 
-bool Vision::frames_at_work(Timestamp t) const {
-  return is_fused() && last_frame_ && t - *last_frame_ < kFramesMissing;
+bool Vision::frames_available(Timestamp t) const {
+  return is_fused() && last_frame_ && t - *last_frame_ < kPipelineTuning.frames_missing_after;
 }
 
 /// Whether frames have enough features for event frames to keep few.
-bool Vision::frames_carry(Timestamp t) const {
-  return frames_at_work(t) && carried_by_frames() >= config_.health.min_event_features;
+bool Vision::frames_sufficient(Timestamp t) const {
+  return frames_available(t) && effective_frame_tracks() >= config_.health.min_event_features;
 }
 
 /// Frames give more accurate observations than events, if they show the feature: in good light a few features on the
 /// event frame are enough; in the dark, in glare and without frames it keeps all.
-int Vision::features_wanted(const Channel& channel, Timestamp t) const {
-  if (channel.camera.modality == Modality::Frames)
+int Vision::features_wanted(const CameraTracker& tracker, Timestamp t) const {
+  if (tracker.camera.modality == Modality::Frames)
     return part_of_budget(config_.frame_tracker.detector.max_features, low_light_.size());
   const int all = config_.event_tracker.detector.max_features;
-  if (!frames_at_work(t)) return part_of_budget(all, event_views_.size());
-  return part_of_budget(std::max(config_.health.min_event_features, all - static_cast<int>(carried_by_frames())),
+  if (!frames_available(t)) return part_of_budget(all, event_views_.size());
+  return part_of_budget(std::max(config_.health.min_event_features, all - static_cast<int>(effective_frame_tracks())),
                         event_views_.size());
 }
 
-bool Vision::is_quiet(const Packet& packet, std::span<const EventImage> event_images) const {
-  bool quiet = !event_views_.empty();
+bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_images) const {
+  bool is_static = !event_views_.empty();
   for (std::size_t i = 0; i < event_views_.size(); ++i)
-    quiet = quiet && (event_images[i].noise || event_views_[i].quiet(packet.events[i]));
-  return quiet;
+    is_static = is_static && (event_images[i].noise || event_views_[i].is_static(packet.events[i]));
+  return is_static;
 }
 
-std::vector<TrackedImage> Vision::images_of(std::span<const ChannelView> views) const {
+std::vector<TrackedImage> Vision::images_of(std::span<const CameraImage> views) const {
   std::vector<TrackedImage> images;
-  for (const Channel& channel : channels_) {
-    const FeatureTracker& tracker = channel.tracker;
-    images.push_back({channel.camera.name, tracker.camera(), {}, tracker.tracks(), channel.survival_rate()});
-    const auto view = std::ranges::find(views, &channel, &ChannelView::channel);
+  for (const CameraTracker& tracker : trackers_) {
+    const FeatureTracker& features = tracker.features;
+    images.push_back({tracker.camera.name, features.camera(), {}, features.tracks(), tracker.survival_rate()});
+    const auto view = std::ranges::find(views, &tracker, &CameraImage::tracker);
     if (view != views.end()) images.back().image = view->track;
   }
   return images;

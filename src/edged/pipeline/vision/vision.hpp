@@ -26,17 +26,17 @@ namespace edged {
 
 struct VisionInput {
   const Packet& packet;
-  const BodyMotion& body;    ///< as predicted, up to the packet
-  bool gyro_trusted = true;  ///< since the packet before
+  const ImuPropagator& body;  ///< as predicted, up to the packet
+  bool gyro_trusted = true;   ///< since the packet before
 };
 
 struct VisionOutput {
   double scene_depth = 0.0;                      ///< z-depth [m] used by the warp
   std::vector<EventImage> event_images;          ///< one per event camera, empty if there were too few events
   std::vector<TrackedImage> images;              ///< one per camera of the run
-  std::vector<CameraObservations> observations;  ///< of the cameras with an image in the packet
+  std::vector<CameraObservations> observations;  ///< one per camera with an image in the packet
   bool keyframe = false;                         ///< the packet should become a keyframe, and vision has made it one
-  bool events_quiet = false;                     ///< the view of every event camera is static
+  bool events_static = false;                    ///< the view of every event camera is static
   std::optional<RegionDepth> depth;              ///< for Eq. 5
 };
 
@@ -50,7 +50,7 @@ struct VisionCorrection {
   std::vector<RigCamera> cameras = {};      ///< as calibrated
   std::optional<SE3> T_new_old = {};        ///< from the old odometry frame to the new one, where the estimator started
   bool ended = false;                       ///< the estimate has ended with this packet
-  bool provisional = true;                  ///< there is no estimate, or its scale is not certain yet
+  bool provisional = true;                  ///< no estimate, or one whose scale is not certain yet
 };
 
 /// One object for all cameras of a run. A cycle is process, then correct. Deterministic, except with a depth network in
@@ -62,9 +62,9 @@ class Vision {
 
   VisionOutput process(const VisionInput& input);
   /// body: as estimated, at the time of the packet.
-  void correct(const VisionCorrection& correction, const BodyMotion& body);
+  void correct(const VisionCorrection& correction, const ImuPropagator& body);
   /// A clock was set back and a new time begins: tracks end.
-  void begin_time();
+  void begin_epoch();
 
   /// For observers; output: of that packet.
   std::vector<CameraStep> describe(Packet packet, const VisionOutput& output) const;
@@ -75,26 +75,26 @@ class Vision {
   SceneDepth fresh_depth() const {
     return {config_.depth, rig_.cameras.front(), config_.estimator.depth_factor.enabled, inference_};
   }
-  void make_channels();
+  void make_trackers();
   double measure_depth(const Packet& packet);
   std::vector<EventImage> render(const VisionInput& input, double scene_depth);
-  std::optional<DepthGrid> event_depths(std::size_t camera, const BodyMotion& body, double scene_depth) const;
-  std::vector<SeenDepth> landmarks_seen_by(const Channel& viewer, const BodyMotion& body) const;
-  std::vector<ChannelView> views_of(const Packet& packet, std::span<const EventImage> event_images);
-  void track(const ChannelView& view, const VisionInput& input, double scene_depth);
-  void reject(std::span<const ChannelView> views, const BodyMotion& body);
-  bool is_keyframe(const VisionInput& input, std::span<const ChannelView> views) const;
-  void share(const ChannelView& from, const ChannelView& to, const BodyMotion& body);
-  std::optional<double> landmark_depth(const Channel& channel, FeatureId id) const;
-  void mark_keyframe(const VisionInput& input, std::span<ChannelView> views, double scene_depth);
-  void expect_events(std::span<ChannelView> views, const BodyMotion& body, double scene_depth) const;
-  bool is_fused() const { return !event_views_.empty() && event_views_.size() < channels_.size(); }
-  double carried_by_frames() const;
-  bool frames_at_work(Timestamp t) const;
-  bool frames_carry(Timestamp t) const;
-  int features_wanted(const Channel& channel, Timestamp t) const;
-  bool is_quiet(const Packet& packet, std::span<const EventImage> event_images) const;
-  std::vector<TrackedImage> images_of(std::span<const ChannelView> views) const;
+  std::optional<DepthGrid> event_depths(std::size_t camera, const ImuPropagator& body, double scene_depth) const;
+  std::vector<SeenDepth> landmarks_seen_by(const CameraTracker& viewer, const ImuPropagator& body) const;
+  std::vector<CameraImage> views_of(const Packet& packet, std::span<const EventImage> event_images);
+  void track(const CameraImage& view, const VisionInput& input, double scene_depth);
+  void reject(std::span<const CameraImage> views, const ImuPropagator& body);
+  bool is_keyframe(const VisionInput& input, std::span<const CameraImage> views) const;
+  void match_across(const CameraImage& from, const CameraImage& to, const ImuPropagator& body);
+  std::optional<double> landmark_depth(const CameraTracker& tracker, FeatureId id) const;
+  void mark_keyframe(const VisionInput& input, std::span<CameraImage> views, double scene_depth);
+  void expect_events(std::span<CameraImage> views, const ImuPropagator& body, double scene_depth) const;
+  bool is_fused() const { return !event_views_.empty() && event_views_.size() < trackers_.size(); }
+  double effective_frame_tracks() const;
+  bool frames_available(Timestamp t) const;
+  bool frames_sufficient(Timestamp t) const;
+  int features_wanted(const CameraTracker& tracker, Timestamp t) const;
+  bool is_static(const Packet& packet, std::span<const EventImage> event_images) const;
+  std::vector<TrackedImage> images_of(std::span<const CameraImage> views) const;
 
   OdometryConfig config_;
   Inference inference_;
@@ -102,9 +102,9 @@ class Vision {
   bool provisional_ = true;      ///< by the last correction
   Rig rig_;                      ///< with online calibration
   StageTimings* timings_;
-  std::vector<EventView> event_views_;         ///< of the event cameras, the first of the rig
-  std::vector<LowLightNormalizer> low_light_;  ///< of the frame cameras, the others
-  std::vector<Channel> channels_;              ///< as in rig_
+  std::vector<EventView> event_views_;         ///< one per event camera, the first of the rig
+  std::vector<LowLightNormalizer> low_light_;  ///< one per frame camera, the others
+  std::vector<CameraTracker> trackers_;        ///< as in rig_
   SceneDepth depth_;
   FeatureId next_feature_ = 1;
   std::optional<Timestamp> last_keyframe_, last_frame_;

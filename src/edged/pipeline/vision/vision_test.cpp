@@ -58,7 +58,7 @@ class PlaneVision : public testing::Test {
   PlaneScene scene_{davis_like_pinhole(), 2.0};
   Rig rig_;
   StageTimings timings_;
-  BodyMotion body_{ImuNoise{}, std::chrono::milliseconds(250)};
+  ImuPropagator body_{ImuNoise{}, std::chrono::milliseconds(250)};
 };
 
 TEST_F(PlaneVision, ObservesFeaturesWhereTheMotionPutsThem) {
@@ -127,7 +127,7 @@ TEST_F(PlaneVision, BeginsANewTimeWithNewFeatures) {
   std::set<FeatureId> before;
   const VisionOutput first = show(vision, 0);
   for (const Track& track : first.images.front().tracks) before.insert(track.id);
-  vision.begin_time();
+  vision.begin_epoch();
   const VisionOutput output = show(vision, 1);
   EXPECT_TRUE(output.keyframe);
   for (const Track& track : output.images.front().tracks) EXPECT_FALSE(before.contains(track.id));
@@ -139,7 +139,7 @@ TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
   Packet few = packet(0);
   few.events.push_back({"dvs", {{few.t, 10, 10, true}}, 1, 1, 25.0});
   const VisionOutput output = process(vision, few, 0);
-  EXPECT_TRUE(output.events_quiet);
+  EXPECT_TRUE(output.events_static);
   EXPECT_TRUE(output.event_images.front().frame.empty());
   EXPECT_TRUE(output.observations.empty());
   const std::vector<CameraStep> cameras = vision.describe(few, output);
@@ -167,7 +167,7 @@ TEST_F(PlaneVision, ObservesNothingInAnEventFrameOfNoise) {
     const VisionOutput output = process(vision, noise, image);
     if (image == 0) continue;  // no motion is known yet
     EXPECT_FALSE(output.event_images.front().frame.empty()) << "it is shown";
-    EXPECT_TRUE(output.events_quiet) << "motion would show";
+    EXPECT_TRUE(output.events_static) << "motion would show";
     EXPECT_TRUE(output.observations.empty());
     EXPECT_FALSE(output.keyframe);
   }

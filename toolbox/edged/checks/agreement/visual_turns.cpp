@@ -111,7 +111,7 @@ void VisualTurns::add_image(const cv::Mat& image, Timestamp t) {
   View view{t, {}};
   for (const Track& track : tracker_.tracks()) view.points[track.id] = track.point;
   if (!views_.empty() && t - views_.front().t >= kBaseline && t - views_.front().t <= kLongest) add_turn(view);
-  if (tracker_.needs_corners()) tracker_.detect(image, next_id_);
+  if (tracker_.needs_detection()) tracker_.detect(image, next_id_);
   for (const Track& track : tracker_.tracks()) view.points[track.id] = track.point;
   views_.push_back(std::move(view));
 }
