@@ -29,7 +29,6 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen);
 void add_eval_command(CLI::App& app, std::function<int()>& chosen);
 void add_report_command(CLI::App& app, std::function<int()>& chosen);
 void add_map_command(CLI::App& app, std::function<int()>& chosen);
-void add_enhance_command(CLI::App& app, std::function<int()>& chosen);
 void add_depth_command(CLI::App& app, std::function<int()>& chosen);
 void add_config_command(CLI::App& app, std::function<int()>& chosen);
 void add_ros2_command(CLI::App& app, std::function<int()>& chosen);

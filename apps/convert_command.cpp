@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "edged/io/write_recording.hpp"
 
 namespace edged {
@@ -31,7 +31,7 @@ struct ConvertOptions {
 std::string left_out_text(const WriteCounts& counts, std::string_view format) {
   std::vector<std::string> parts;
   const auto add = [&parts](std::size_t count, const char* what) {
-    if (count > 0) parts.push_back(counted(count, what));
+    if (count > 0) parts.push_back(quantity(count, what));
   };
   add(counts.frames_left_out, "frame");
   add(counts.imu_left_out, "IMU sample");
@@ -60,8 +60,8 @@ void print_summary(const ConvertOptions& options, const WritableFormat& format, 
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{}: {}, {}, {}, {}{}\n{}", options.target.string(), counted(counts.events, "event"),
-             counted(counts.frames, "frame"), counted(counts.imu, "IMU sample"), counted(counts.poses, "true pose"),
+  fmt::print("{}: {}, {}, {}, {}{}\n{}", options.target.string(), quantity(counts.events, "event"),
+             quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"), quantity(counts.poses, "true pose"),
              external_text(counts.external), left_out_text(counts, format.name));
   for (const auto& [kind, count] : repairs) fmt::print("repaired: {} ({})\n", kind, count);
 }

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "program.hpp"
 
 namespace {
@@ -58,7 +58,6 @@ int main(int argc, char** argv) {
   add_eval_command(app, chosen);
   add_report_command(app, chosen);
   add_map_command(app, chosen);
-  add_enhance_command(app, chosen);
   add_depth_command(app, chosen);
   add_config_command(app, chosen);
   add_ros2_command(app, chosen);

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
 #include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/recording.hpp"
 #include "edged/io/write_recording.hpp"
@@ -80,8 +80,8 @@ int run_simulate(const SimulateOptions& options) {
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}: {}events, {}, {}, {}{}\n", folder.string(), si_number(static_cast<double>(counts.events)),
-               counted(counts.frames, "frame"), counted(counts.imu, "IMU sample"), counted(counts.poses, "true pose"),
-               external_text(counts.external));
+               quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"),
+               quantity(counts.poses, "true pose"), external_text(counts.external));
   }
   return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
 }

@@ -17,7 +17,7 @@ class CommandLine(WithFolder):
         text = edged("--help").stdout
         for word in ("simulate", "run", "eval", "config", "Exit codes", "edged run"):
             self.assertIn(word, text)
-        for command in ("run", "info", "doctor", "calib", "convert", "simulate", "eval", "enhance", "depth"):
+        for command in ("run", "info", "doctor", "calib", "convert", "simulate", "eval", "depth"):
             self.assertIn("Example", edged(command, "--help").stdout)
 
     def test_every_help_fits_a_terminal_and_names_values_as_they_are_written(self):

@@ -13,7 +13,7 @@
 #include "edged/sim/motion/trajectory.hpp"
 #include "edged/sim/scene/scene.hpp"
 #include "edged/sim/sensors/renderer.hpp"
-#include "run/dense_scan.hpp"
+#include "scene/dense_scan.hpp"
 
 namespace edged {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/core/utility.hpp>
 #include <random>
 
-#include "common/step_facts.hpp"
+#include "common/step_numbers.hpp"
 #include "end_to_end.hpp"
 
 namespace edged {
@@ -25,7 +25,7 @@ std::vector<double> all_numbers_of(const Step& o) {
   const auto& p = o.state.T_W_B.translation();
   const auto& q = o.state.T_W_B.rotation();
   const auto &v = o.state.v_W, &bg = o.state.bias_gyro, &ba = o.state.bias_accel;
-  const KindNumbers events = numbers_of(o, Modality::Events), frames = edged::numbers_of(o, Modality::Frames);
+  const ModalityNumbers events = modality_numbers(o, Modality::Events), frames = modality_numbers(o, Modality::Frames);
   return {p.x(),
           p.y(),
           p.z(),

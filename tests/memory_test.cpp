@@ -18,8 +18,8 @@
 #include "edged/sim/simulator.hpp"
 #include "end_to_end.hpp"
 #include "memory_use.hpp"
+#include "outputs/states.hpp"
 #include "run/run_folder.hpp"
-#include "run/run_writer.hpp"
 
 namespace edged {
 namespace {

@@ -18,7 +18,7 @@
 #include "edged/pipeline/mode.hpp"
 #include "edged/sim/scene/scene.hpp"
 #include "end_to_end.hpp"
-#include "run/occupancy.hpp"
+#include "scene/occupancy.hpp"
 
 namespace edged {
 namespace {

@@ -62,26 +62,6 @@ class Show(WithFlight):
         for window in (0, 1e-10, 1e12, "nan"):
             self.assert_refused(edged("show", self.flight, "--window", window, "--out", "x.html"), "--window", code=2)
 
-    def test_enhance_draws_events_as_they_fell_without_imu_and_calibration(self):
-        out = self.folder / "steps"
-        made = edged("enhance", self.bare(), "--geometry", "240x180", "--at", 3, "--out", out, "--quiet", "--json")
-        self.assertEqual(made.returncode, 0, made.stderr)
-        self.assertEqual(len(made.stderr.strip().splitlines()), 1)
-        self.assertIn("raw pixels, not motion-compensated: the recording has no IMU samples", made.stderr)
-        self.assertEqual(json.loads(made.stdout)["drawn_how"], "raw pixels, not motion-compensated")
-        self.assertTrue((out / "sheet.png").exists() and (out / "03_event_frame_raw_pixels_not_motion_compensated.png").exists())
-        self.assertFalse((out / "02_events_without_compensation.png").exists())
-
-    def test_enhance_takes_the_events_up_to_the_moment_also_of_a_file_of_a_few(self):
-        events = self.folder / "few.txt"
-        call = ("enhance", events, "--geometry", "16x16", "--out", self.folder / "few", "--quiet", "--json")
-        events.write_text("".join(f"{t} {n % 16} {n // 16} 1\n" for t in (1.0, 1.001, 1.002) for n in range(256)))
-        made = edged(*call, "--at", 0.001, "--set", "packets.window_per_pixel=2")
-        self.assertEqual(json.loads(made.stdout)["events"], 512, made.stderr)
-        self.assertEqual(json.loads(edged(*call, "--at", 0).stdout)["events"], 89)
-        events.write_text("# t x y p\n")
-        self.assert_refused(edged(*call, "--at", 0), "few.txt")
-
     @unittest.skipUnless(CHROMIUM, "no chromium here: apt-get install chromium")
     def test_it_plays_in_a_browser_narrow_and_wide_light_and_dark(self):
         page = self.folder / "page.html"

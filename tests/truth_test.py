@@ -94,7 +94,7 @@ class Truth(WithFlight):
         self.assertIn("ground truth cannot be read", result.stderr)
         log = (out / "run.log").read_text()
         self.assertLess(log.index("ground truth cannot be read"), log.index("started"))
-        for name in ("metrics.json", "report.html", "overview.png", "map.ply", "trajectory.tum"):
+        for name in ("metrics.json", "report.html", "map.ply", "trajectory.tum"):
             self.assertGreater((out / name).stat().st_size, 0, name)
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertIsNone(metrics["ate_rmse_m"])

@@ -21,7 +21,7 @@ class Verdict(WithFlight):
         return result, json.loads((out / "metrics.json").read_text())
 
     def assert_one_verdict(self, result, metrics):
-        """Table, page, log and metrics.json have the same words; overview.png has those of the page."""
+        """Table, page, log and metrics.json have the same words."""
         folder = pathlib.Path(metrics["folder"])
         said = re.search(r"verdict +(.*\n(?: {20,}.*\n)*)", result.stdout).group(1)
         self.assertEqual(" ".join(said.split()), metrics["verdict"])

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/findings.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
@@ -18,9 +19,8 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "inspect/survey.hpp"
+#include "run/estimated_calibration.hpp"
 #include "run/run_statistics.hpp"
-#include "run/verdict.hpp"
 
 namespace edged {
 namespace {
@@ -58,7 +58,7 @@ class CheckRun {
   }
   /// The estimated calibration, from all measurements up to the last good estimate.
   const Rig& rig() const { return rig_; }
-  const std::map<std::string, CalibrationCovariance>& covariances() const { return covariances_; }
+  const CalibrationCovariances& covariances() const { return covariances_; }
 
  private:
   std::optional<Measurement> next(Dataset& recording) {
@@ -83,9 +83,9 @@ class CheckRun {
   }
 
   std::vector<CalibrationFound> compare() {
-    for (const RigCamera& camera : rig_.cameras)
-      if (const auto P = odometry_.calibration_covariance(camera.name)) covariances_[camera.name] = *P;
-    return compare_calibrations(source_.calibration.rig, odometry_, config_.estimator.calibration);
+    const CalibrationCovariances present = calibration_covariances(odometry_);
+    for (const auto& [camera, P] : present) covariances_[camera] = P;
+    return compare_calibrations(source_.calibration.rig, rig_, present, config_.estimator.calibration);
   }
 
   Source& source_;
@@ -96,7 +96,7 @@ class CheckRun {
   RunStatistics statistics_;
   std::optional<Timestamp> compared_;
   Rig rig_;
-  std::map<std::string, CalibrationCovariance> covariances_;
+  CalibrationCovariances covariances_;
   std::vector<CalibrationFound> found_;
 };
 
@@ -145,7 +145,7 @@ int check_calibration(CalibCheckOptions options) {
   const auto [fit, found, covariances] = check(options, source, mode);
   if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
   fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit) + next_line(options, fit.fit));
-  if (!options.out.empty()) write_file(options.out, to_yaml(with_found(source.calibration, found)));
+  if (!options.out.empty()) write_file(options.out, to_yaml(with_estimated(source.calibration, found)));
   return exit_code_of(fit.fit);
 }
 

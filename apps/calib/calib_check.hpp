@@ -4,11 +4,11 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 
 #include "common/source.hpp"
 #include "edged/checks/calibration_fit.hpp"
+#include "run/estimated_calibration.hpp"
 
 namespace edged {
 
@@ -25,7 +25,7 @@ inline constexpr double kCheckedSeconds = 20.0;  ///< default length of the used
 struct CalibrationRun {
   CalibrationFit fit;
   Rig found;
-  std::map<std::string, CalibrationCovariance> covariances;  ///< by camera; none without an estimate
+  CalibrationCovariances covariances;
 };
 
 /// A run like that of `edged run`, without its files, that asks each camera by itself. begin: the initial calibration

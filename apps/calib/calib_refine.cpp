@@ -15,12 +15,13 @@
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
+#include "common/text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/calibration_prior.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "run/verdict.hpp"
+#include "run/estimated_calibration.hpp"
 
 namespace edged {
 namespace {
@@ -185,7 +186,7 @@ int refine_calibration(const CalibRefineOptions& options) {
   if (refined.empty()) return kExitNeverGood;
   Rig found;
   for (const RefinedCamera& camera : refined) found.cameras.push_back(camera.found);
-  write_file(options.out, to_yaml(with_found(*begin.calibration, found)));
+  write_file(options.out, to_yaml(with_estimated(*begin.calibration, found)));
   if (!options.json) fmt::print("{:<11} edged run RECORDING --calib {}\n", "next", shell_word(options.out.string()));
   return kExitOk;
 }

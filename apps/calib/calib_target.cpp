@@ -13,12 +13,12 @@
 
 #include "calib/target_result.hpp"
 #include "commands.hpp"
-#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/numbers.hpp"
 #include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "edged/calibrate/collector.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
@@ -95,7 +95,7 @@ void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& camer
                 DistortionModel lens, StatusLine& status) {
   std::string needed;
   for (const TargetViews& views : cameras) {
-    status.show(fmt::format("lens of {} from {}", views.name, counted(views.views.size(), "view")));
+    status.show(fmt::format("lens of {} from {}", views.name, quantity(views.views.size(), "view")));
     LensFit fit = fit_lens(views, collector.layout(), lens);
     result.coverage.push_back(coverage_of(views, fit, collector.layout()));
     const MissingViews missing = missing_views(views, fit, result.coverage.back());

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "common/counted.hpp"
+#include "common/text.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/statistics.hpp"
@@ -49,13 +49,13 @@ std::string camera_text(const TargetCalibration& result, std::size_t i) {
   std::string out =
       fmt::format("camera {}: {} x {} px, {}, target in {} of {}, corners in {:.0f} % of the image\n", views.name,
                   views.width, views.height, to_string(camera.lens.distortion), views.views.size(),
-                  counted(views.pictures, "picture"), 100.0 * result.coverage[i].share);
+                  quantity(views.pictures, "picture"), 100.0 * result.coverage[i].share);
   const auto names = parameter_names(camera.lens);
   for (std::size_t k = 0; k < names.size(); ++k)
     out += fmt::format("  {:<12} {:>12.{}f} +- {:.{}f}{}\n", names[k], camera.lens.values[k], k < 4 ? 3 : 6,
                        camera.lens_sigmas[k], k < 4 ? 3 : 6, k < 4 ? " px" : "");
   out += fmt::format("  {:<12} {:>12.3f} px median, {:.3f} px rms, {}\n", "reprojection", median_px(camera),
-                     rms_px(camera), counted(camera.residuals.size(), "corner"));
+                     rms_px(camera), quantity(camera.residuals.size(), "corner"));
   if (!has_pose(result, i)) return out;
   const Eigen::Vector3d turn = so3::log(camera.T_B_C.rotation()) / kDegree, p = 1e3 * camera.T_B_C.translation();
   out += fmt::format("  {:<12} [{:.3f}, {:.3f}, {:.3f}] +- {:.3f} deg (rotation vector)\n",

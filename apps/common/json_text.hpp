@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes json as text, for --json and files.
+// Json for --json and for files.
 #pragma once
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace edged {
 
@@ -15,7 +16,7 @@ inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The same in one line.
+/// Text in one line, with bytes replaced as by json_text.
 inline std::string compact_json(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -24,5 +25,17 @@ inline std::string compact_json(const nlohmann::ordered_json& json) {
 inline nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
+
+/// A value, or null without one.
+template <typename T>
+nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// A number rounded to so many decimals, to save space as text; null if it is not finite.
+nlohmann::ordered_json rounded(double value, int decimals);
+
+/// Bytes as text of 64 letters (RFC 4648).
+std::string base64(const std::vector<unsigned char>& bytes);
 
 }  // namespace edged

@@ -14,6 +14,7 @@
 
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -237,16 +238,6 @@ Source calibrated(const SourceOptions& options, Recording recording) {
 
 OwnTruth read_truth(const Dataset& dataset) try { return {dataset.ground_truth(), ""}; } catch (const InputError& e) {
   return {std::nullopt, e.what()};
-}
-
-std::string shell_word(const std::string& text) {
-  const bool plain =
-      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=,+-~") ==
-      std::string::npos;
-  if (plain && !text.empty()) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string command_line(const std::string& command, const SourceOptions& source) {

@@ -81,9 +81,6 @@ Source open_source(const SourceOptions& options);
 /// The same for an open recording.
 Source calibrated(const SourceOptions& options, Recording recording);
 
-/// A text as one word of a command line, quoted if necessary.
-std::string shell_word(const std::string& text);
-
 /// The command line `edged COMMAND RECORDING` with the options for reading the recording.
 std::string command_line(const std::string& command, const SourceOptions& source);
 

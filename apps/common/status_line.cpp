@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "common/text.hpp"
+
 namespace edged {
 namespace {
 
@@ -66,13 +68,6 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
 
 void StderrSink::flush_() { std::fflush(stderr); }
 
-std::string si_number(double value) {
-  if (value >= 1e9) return fmt::format("{:.2f} G", value * 1e-9);
-  if (value >= 1e6) return fmt::format("{:.2f} M", value * 1e-6);
-  if (value >= 1e3) return fmt::format("{:.1f} k", value * 1e-3);
-  return fmt::format("{:.0f} ", value);
-}
-
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what) {
   const Timestamp begin = info.begin.value_or(Timestamp());
   const std::string whole = info.end ? fmt::format(" / {:.1f}", to_seconds(*info.end - begin)) : "";
@@ -93,24 +88,6 @@ std::string share_text(std::optional<double> share, double elapsed_s) {
   const long hours = left_s / 3600, minutes = left_s / 60 % 60;
   const std::string whole = hours > 0 ? fmt::format("{}:{:02}", hours, minutes) : fmt::format("{}", minutes);
   return fmt::format("{}, {}:{:02} left  ", percent, whole, left_s % 60);
-}
-
-std::string wrapped(const std::string& line, std::size_t indent) {
-  std::string text, rest = line;
-  while (rest.size() > kColumns) {
-    std::size_t at = rest.rfind(' ', kColumns);
-    if (at == std::string::npos || at <= indent) at = rest.find(' ', std::max(kColumns, indent));
-    if (at == std::string::npos) break;
-    const std::size_t end = rest.find_last_not_of(' ', at);
-    text += rest.substr(0, end + 1) + '\n';
-    rest = std::string(indent, ' ') + rest.substr(at + 1);
-  }
-  return text + rest;
-}
-
-std::string fit_columns(const std::string& text, std::size_t columns) {
-  const std::string line = text.substr(0, text.find('\n'));
-  return line.size() <= columns ? line : line.substr(0, columns);
 }
 
 }  // namespace edged

@@ -46,9 +46,6 @@ class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override;
 };
 
-/// "1234567" -> "1.23 M", for rates and counts.
-std::string si_number(double value);
-
 /// Progress at time t: "12.3 / 60.0 s read", without the total if it is unknown.
 std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view what);
 
@@ -57,14 +54,5 @@ std::optional<double> share_done(Timestamp t, const DatasetInfo& info);
 
 /// "42 %, 1:05 left  ": the time that is left at the speed so far, if it can be told. "" without a share.
 std::string share_text(std::optional<double> share, double elapsed_s);
-
-/// Minimum width of a terminal.
-inline constexpr std::size_t kColumns = 80;
-
-/// A text wrapped between words at kColumns, with later lines indented. A single word may be longer.
-std::string wrapped(const std::string& line, std::size_t indent);
-
-/// One line, cut to a number of columns.
-std::string fit_columns(const std::string& text, std::size_t columns);
 
 }  // namespace edged

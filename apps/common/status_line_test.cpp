@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/text.hpp"
+
 namespace edged {
 namespace {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "common/findings.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
@@ -96,7 +97,7 @@ int run_doctor(const DoctorOptions& options) {
   add_log(held.take(), findings);
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});
-  const bool ill = std::ranges::count(findings, Severity::Error, &Finding::severity) > 0;
+  const bool ill = has_error(findings);
   fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n"
                                 : to_text(findings) + "next     " + next_step(options, recording, ill) + "\n");
   return ill ? kExitInput : kExitOk;

@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "common/pictures.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
 namespace {
 
+const cv::Scalar kPaper(255, 255, 255);
 const cv::Vec3d kBrighterInk(192, 111, 31), kDarkerInk(26, 80, 200), kCountInk(48, 36, 29);
 
 /// 0 without an event, 0.5 for one, 0.75 for two, ...

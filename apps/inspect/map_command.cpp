@@ -11,14 +11,14 @@
 #include <string>
 
 #include "commands.hpp"
-#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/json_text.hpp"
+#include "common/text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/map/map_merge.hpp"
-#include "run/final_trajectory.hpp"
-#include "run/run_map.hpp"
+#include "outputs/final_trajectory.hpp"
+#include "outputs/map.hpp"
 
 namespace edged {
 namespace {
@@ -62,12 +62,12 @@ int run_info(const MapCommandOptions& options) {
     return kExitOk;
   }
   fmt::print("{}: {}, {} over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
-             counted(about["keyframes"].get<int>(), "keyframe"), counted(about["points"].get<int>(), "point"),
+             quantity(about["keyframes"].get<int>(), "keyframe"), quantity(about["points"].get<int>(), "point"),
              about["size_m"][0].get<double>(), about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
              std::filesystem::file_size(options.file) / 1024);
   for (const auto& camera : about["cameras"])
     fmt::print("  {:<12} {}; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
-               counted(camera["keyframes"].get<int>(), "keyframe"), camera["width"].get<int>(),
+               quantity(camera["keyframes"].get<int>(), "keyframe"), camera["width"].get<int>(),
                camera["height"].get<int>(), camera["focal_px"].get<double>());
   return kExitOk;
 }
@@ -80,7 +80,7 @@ int run_show(const MapCommandOptions& options) {
     fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
   else
     fmt::print("{}: points of {}; any viewer of point clouds shows them\n", options.out.string(),
-               counted(map.keyframes.size(), "keyframe"));
+               quantity(map.keyframes.size(), "keyframe"));
   return kExitOk;
 }
 
@@ -104,7 +104,7 @@ int run_merge(const MapCommandOptions& options) {
     return kExitOk;
   }
   fmt::print("{}: {}; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
-             counted(both.keyframes.size(), "keyframe"), options.other.string(), p.x(), p.y(), p.z(),
+             quantity(both.keyframes.size(), "keyframe"), options.other.string(), p.x(), p.y(), p.z(),
              options.file.string(), so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
   return kExitOk;
 }

@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "common/evenly.hpp"
+#include "common/even_sample.hpp"
+#include "common/json_text.hpp"
 #include "common/pictures.hpp"
 #include "edged/io/parse/image_codec.hpp"
-#include "report/report_rows.hpp"
-#include "run/run_album.hpp"
 
 namespace edged {
 namespace {

@@ -13,13 +13,13 @@
 #include <string>
 
 #include "commands.hpp"
-#include "common/counted.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/numbers.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/event_pictures.hpp"
@@ -142,8 +142,8 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
     fmt::print("{}\n", json_text(json));
     return;
   }
-  fmt::print("{}: {} of events, {}\n", options.out.string(), counted(shown.pictures, "picture"),
-             counted(shown.frames, "frame"));
+  fmt::print("{}: {} of events, {}\n", options.out.string(), quantity(shown.pictures, "picture"),
+             quantity(shown.frames, "frame"));
   if (shown.every > 1)
     fmt::print("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
                shown.every, options.max_mb);

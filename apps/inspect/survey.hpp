@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// One pass through a recording; survey, diagnosis and calibration check as text and json.
+// One pass through a recording, and its survey as text and json.
 #pragma once
 
 #include <functional>
@@ -10,22 +10,12 @@
 #include <vector>
 
 #include "common/source.hpp"
-#include "edged/checks/calibration_fit.hpp"
-#include "edged/checks/checks.hpp"
 #include "edged/checks/statistics/recording_statistics.hpp"
 
 namespace edged {
 
 std::string to_text(const RecordingStatistics& survey);
 nlohmann::ordered_json to_json(const RecordingStatistics& survey);
-
-/// A line for each finding and one for its remedy, errors last, and a summary.
-std::string to_text(const std::vector<Finding>& findings);
-nlohmann::ordered_json to_json(const std::vector<Finding>& findings);
-
-std::string to_text(const CalibrationFit& fit);
-nlohmann::ordered_json to_json(const CalibrationFit& fit);
-nlohmann::ordered_json to_json(const CalibrationFound& found);
 
 struct SurveyRun {
   RecordingStatistics survey;

@@ -3,6 +3,7 @@
 // --mavlink: sends the state at each IMU sample of a live run to an autopilot.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <mutex>
@@ -11,16 +12,21 @@
 #include "edged/autopilot/mavlink_output.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
-#include "run/run_observer.hpp"
+#include "run/run_context.hpp"
 
 namespace edged {
 namespace {
+
+struct AutopilotOptions {
+  std::string url;  ///< of the autopilot; "" without one
+};
 
 /// Predicts in the thread that plays the recording: the thread of the run is busy with packets for milliseconds, and
 /// its newest_state() waits as long for the samples.
 class AutopilotOutput : public RunObserver {
  public:
-  explicit AutopilotOutput(RunContext& run) : run_(run), output_(run.options.mavlink, run.config.autopilot) {}
+  explicit AutopilotOutput(RunContext& run)
+      : run_(run), url_(run.options.outputs.get<AutopilotOptions>().url), output_(url_, run.config.autopilot) {}
 
   void on_due(const Measurement& measurement) override {
     const auto* sample = std::get_if<ImuSample>(&measurement);
@@ -46,13 +52,14 @@ class AutopilotOutput : public RunObserver {
     run_.timings.put("autopilot", to_wire_);
     const MavlinkCounters counters = output_.counters();
     const std::string text =
-        fmt::format("{}: {} messages of odometry, {} heartbeats and {} answers to TIMESYNC sent, {} not taken",
-                    run_.options.mavlink, counters.odometry, counters.heartbeats, counters.timesyncs, counters.dropped);
+        fmt::format("{}: {} messages of odometry, {} heartbeats and {} answers to TIMESYNC sent, {} not taken", url_,
+                    counters.odometry, counters.heartbeats, counters.timesyncs, counters.dropped);
     spdlog::log(counters.dropped > 0 ? spdlog::level::warn : spdlog::level::info, text);
   }
 
  private:
   RunContext& run_;
+  const std::string& url_;
   MavlinkOutput output_;
 
   std::mutex mutex_;  ///< guards all below
@@ -63,13 +70,23 @@ class AutopilotOutput : public RunObserver {
 
 }  // namespace
 
-std::unique_ptr<RunObserver> observe_autopilot(RunContext& run) {
-  if (run.options.mavlink.empty()) return nullptr;
-  if (!run.options.live)
-    throw InputError(
-        "--mavlink needs --live: an autopilot takes each pose for the present one, and a run that is faster or slower "
-        "than its recording would mislead it");
-  return std::make_unique<AutopilotOutput>(run);
+RunOutput autopilot_output() {
+  return {
+      {},
+      [](CLI::App& command, Board& options) {
+        command.add_option(
+            "--mavlink", options.get<AutopilotOptions>().url,
+            "With --live: send the odometry to an autopilot as MAVLink: udp:HOST:PORT, udpin:HOST:PORT (listens) or "
+            "serial:DEVICE:BAUD; how the IMU is mounted, rate and ids: options autopilot.*");
+      },
+      [](RunContext& run) -> std::unique_ptr<RunObserver> {
+        if (run.options.outputs.get<AutopilotOptions>().url.empty()) return nullptr;
+        if (!run.options.live)
+          throw InputError(
+              "--mavlink needs --live: an autopilot takes each pose for the present one, and a run that is faster "
+              "or slower than its recording would mislead it");
+        return std::make_unique<AutopilotOutput>(run);
+      }};
 }
 
 }  // namespace edged

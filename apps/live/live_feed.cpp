@@ -9,7 +9,7 @@
 
 #include "common/json_text.hpp"
 #include "common/pictures.hpp"
-#include "common/step_facts.hpp"
+#include "common/step_numbers.hpp"
 #include "report/report_rows.hpp"
 
 namespace edged {
@@ -89,7 +89,8 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   put(step.state.v_W, started);
   put(step.state.bias_gyro, started);
   put(step.state.bias_accel, started);
-  const KindNumbers events = numbers_of(step, Modality::Events), frames = numbers_of(step, Modality::Frames);
+  const ModalityNumbers events = modality_numbers(step, Modality::Events),
+                        frames = modality_numbers(step, Modality::Frames);
   for (const double number : {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks),
                               static_cast<double>(frames.tracks), static_cast<double>(step.landmarks.size()),
                               events.survival_rate.value_or(kUnknown), frames.survival_rate.value_or(kUnknown),
@@ -102,7 +103,7 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   return row;
 }
 
-void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album) {
+void LiveFeed::add(const Step& step, RunProgress progress, const Snapshots& snapshots) {
   if (!origin_) origin_ = step.t;
   const Row row = row_of(step, progress.pace);
   if (viewers_ > 0) take_shots(step);
@@ -111,13 +112,13 @@ void LiveFeed::add(const Step& step, RunProgress progress, const RunAlbum& album
   reason_ = reason_of(step);
   progress_ = std::move(progress);
   changes_.add(step);
-  if (rows_.add(row)) ++thinned_;
+  rows_.add(row);
   const auto now = LiveClockTime::now();
   if (viewers_ == 0 || now < map_taken_ + kMapPeriod) return;
   map_taken_ = now;
   ++map_number_;
   map_.clear();
-  for (const auto& [id, point] : album.points()) map_.insert(map_.end(), point.begin(), point.end());
+  for (const auto& [id, point] : snapshots.points()) map_.insert(map_.end(), point.begin(), point.end());
 }
 
 /// Copies of the images, at the rate of a viewer, as the odometry continues with the originals. Only this thread
@@ -147,7 +148,7 @@ LiveFeed::Present LiveFeed::present(Place& place) const {
   const std::vector<StatusChange>& changes = changes_.all();
   const auto known = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
   const std::size_t shown = std::min(changes.size(), kMostChangesShown);
-  if (place.thinned != thinned_) place.rows = 0;
+  if (place.halvings != rows_.halvings()) place.rows = 0;
   Present now{newest_,
               reason_,
               progress_,
@@ -160,7 +161,7 @@ LiveFeed::Present LiveFeed::present(Place& place) const {
   for (const auto& [name, shot] : shots_) now.shots[name] = shot->number;
   if (place.map != map_number_) now.new_map = map_;
   place.rows = rows_.all().size();
-  place.thinned = thinned_;
+  place.halvings = rows_.halvings();
   place.changes = shown > 0 ? shown - 1 : 0;  // the last one's reason may change
   place.map = map_number_;
   return now;

@@ -16,13 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "common/evenly.hpp"
-#include "common/step_facts.hpp"
+#include "common/even_sample.hpp"
+#include "common/step_numbers.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/step.hpp"
-#include "run/live_points.hpp"
-#include "run/run_album.hpp"
+#include "outputs/snapshots.hpp"
 #include "run/run_statistics.hpp"
+#include "scene/live_points.hpp"
 
 namespace edged {
 
@@ -42,7 +42,7 @@ class LiveFeed {
 
   /// What one viewer has received.
   struct Place {
-    std::size_t rows = 0, thinned = 0, changes = 0, map = 0;
+    std::size_t rows = 0, halvings = 0, changes = 0, map = 0;
     std::size_t left_out = 0;  ///< updates skipped because this viewer was too slow
     LivePoints::Place dense = {};
   };
@@ -50,7 +50,7 @@ class LiveFeed {
   /// Positions are those of `frame`, as in the trajectory files. dense: lives longer.
   LiveFeed(OutputFrame frame, const LivePoints& dense);
 
-  void add(const Step& step, RunProgress progress, const RunAlbum& album);
+  void add(const Step& step, RunProgress progress, const Snapshots& snapshots);
   /// The final numbers, as the last measurements are after the last step.
   void finish(RunProgress progress);
 
@@ -104,8 +104,7 @@ class LiveFeed {
   Row newest_;
   std::string reason_;
   RunProgress progress_;
-  Evenly<Row> rows_{kMostRows};
-  std::size_t thinned_ = 0;
+  EvenSample<Row> rows_{kMostRows};
   StatusChanges changes_;
   std::vector<float> map_;
   std::size_t map_number_ = 0;

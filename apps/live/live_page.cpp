@@ -20,7 +20,7 @@
 #include "edged/core/check.hpp"
 #include "program.hpp"
 #include "report/report_page.hpp"
-#include "run/run_observer.hpp"
+#include "run/run_context.hpp"
 
 namespace edged {
 namespace {
@@ -57,7 +57,7 @@ std::string url_of(const ServeAddress& address) {
 }
 
 /// The title of the run on the live page.
-nlohmann::ordered_json about_run(const RunContext& run) {
+nlohmann::ordered_json about_run(const RunContext& run, const LivePoints& points) {
   const DatasetInfo& info = run.info();
   const bool ends = info.begin && info.end;
   return {{"version", kVersion},
@@ -65,24 +65,36 @@ nlohmann::ordered_json about_run(const RunContext& run) {
           {"format", info.format},
           {"mode", mode_name(run.mode)},
           {"frame", run.frame.name()},
-          {"dense", run.options.dense},
-          {"voxels", !run.options.occupancy.folder.empty()},
+          {"dense", points.has_points},
+          {"voxels", points.has_voxels},
           {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
 }
 
+struct ServeOptions {
+  std::string address;  ///< "true" for the default; "" without a live page
+};
+
 class ServedPage : public RunObserver {
  public:
-  explicit ServedPage(const RunContext& run)
-      : run_(run), page_(*parse_serve_address(run.options.serve), about_run(run), run.frame, run.live_points) {}
+  explicit ServedPage(RunContext& run)
+      : run_(run),
+        points_(run.products.get<LivePoints>()),
+        snapshots_(run.products.get<Snapshots>()),
+        page_(*parse_serve_address(run.options.outputs.get<ServeOptions>().address), about_run(run, points_), run.frame,
+              points_) {
+    points_.watched = true;
+  }
   const char* stage() const override { return "serve"; }
   void on_begin() override { fmt::print(stderr, "edged: watch at {}\n", page_.url()); }
-  void on_step(const Step& step) override { page_.add(step, progress(), run_.album); }
+  void on_step(const Step& step) override { page_.add(step, progress(), snapshots_); }
   void on_end(const RunEnd& end) override { page_.finish(progress(), to_json(end.summary), run_.folder); }
 
  private:
   RunProgress progress() const { return {run_.statistics, run_.statistics.poses(), run_.meter.wall_s(), run_.pace}; }
 
   const RunContext& run_;
+  LivePoints& points_;
+  const Snapshots& snapshots_;
   LivePage page_;
 };
 
@@ -286,8 +298,8 @@ LivePage::~LivePage() = default;
 
 const std::string& LivePage::url() const { return server_->url; }
 
-void LivePage::add(const Step& step, RunProgress progress, const RunAlbum& album) {
-  server_->feed.add(step, std::move(progress), album);
+void LivePage::add(const Step& step, RunProgress progress, const Snapshots& snapshots) {
+  server_->feed.add(step, std::move(progress), snapshots);
 }
 
 void LivePage::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
@@ -311,19 +323,23 @@ std::optional<ServeAddress> parse_serve_address(const std::string& text) {
   return address;
 }
 
-void add_serve_option(CLI::App& command, std::string& text) {
-  command
-      .add_flag("--serve", text,
-                "Show the run live in a browser; --serve=PORT or --serve=HOST:PORT, port 0: any free port "
-                "[127.0.0.1:8765]")
-      ->check([](const std::string& given) {
-        return parse_serve_address(given) ? ""
-                                          : fmt::format("'{}' is no PORT or HOST:PORT, such as --serve=8765", given);
-      });
-}
-
-std::unique_ptr<RunObserver> observe_live_page(RunContext& run) {
-  return run.options.serve.empty() ? nullptr : std::make_unique<ServedPage>(run);
+RunOutput live_page_output() {
+  return {{},
+          [](CLI::App& command, Board& options) {
+            command
+                .add_flag("--serve", options.get<ServeOptions>().address,
+                          "Show the run live in a browser; --serve=PORT or --serve=HOST:PORT, port 0: any free port "
+                          "[127.0.0.1:8765]")
+                ->check([](const std::string& given) {
+                  return parse_serve_address(given)
+                             ? ""
+                             : fmt::format("'{}' is no PORT or HOST:PORT, such as --serve=8765", given);
+                });
+          },
+          [](RunContext& run) -> std::unique_ptr<RunObserver> {
+            if (run.options.outputs.get<ServeOptions>().address.empty()) return nullptr;
+            return std::make_unique<ServedPage>(run);
+          }};
 }
 
 }  // namespace edged

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "common/cli_fwd.hpp"
 #include "live/live_feed.hpp"
 
 namespace edged {
@@ -20,12 +19,9 @@ struct ServeAddress {
   int port = 8765;  ///< 0: any that is free
 };
 
-/// Of "PORT" or "HOST:PORT" ("[::1]:PORT"); of "true", the value of a bare flag, the default address. Nothing for any
-/// other text.
+/// The address of "PORT" or "HOST:PORT" ("[::1]:PORT"); the default for "true", the value of a bare flag. Nothing for
+/// any other text.
 std::optional<ServeAddress> parse_serve_address(const std::string& text);
-
-/// Adds --serve; text is set to the input of parse_serve_address, or stays empty without the flag.
-void add_serve_option(CLI::App& command, std::string& text);
 
 /// Calls by the thread of the run do not block, whatever browsers do, except `finish`.
 class LivePage {
@@ -41,7 +37,7 @@ class LivePage {
   /// For a browser on this machine.
   const std::string& url() const;
 
-  void add(const Step& step, RunProgress progress, const RunAlbum& album);
+  void add(const Step& step, RunProgress progress, const Snapshots& snapshots);
 
   /// Notifies the viewers that the run is over. They get report.html of the folder in place of the live page; returns
   /// when all have it, after at most 10 s, or 2 s after the last request.

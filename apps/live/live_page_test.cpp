@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/json_text.hpp"
 #include "live/live_feed.hpp"
 #include "live/live_page.hpp"
 #include "report/report_data.hpp"
@@ -31,8 +32,8 @@ class LiveRun : public ::testing::Test {
       step.cameras = {
           {.name = "events", .modality = Modality::Events, .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99))}};
       statistics.add(step);
-      album.add(step);
-      feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0, {4.0, std::nullopt}}, album);
+      snapshots.add(step);
+      feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0, {4.0, std::nullopt}}, snapshots);
     }
   }
 
@@ -40,7 +41,7 @@ class LiveRun : public ::testing::Test {
 
   int made = 0;
   RunStatistics statistics;
-  RunAlbum album;
+  Snapshots snapshots;
   LivePoints dense;
   LiveFeed feed{OutputFrame(kHead, "events"), dense};
 };

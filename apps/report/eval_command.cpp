@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "common/numbers.hpp"
 #include "common/source.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
-#include "common/counted.hpp"
 #include "common/numbers.hpp"
+#include "common/text.hpp"
 
 namespace edged {
 namespace {
@@ -94,12 +94,12 @@ std::string local_error_text(const std::vector<LocalError>& local) {
 
 std::string to_table(const Evaluation& e) {
   const bool timed = !std::isnan(e.duration_s);
-  std::string table = fmt::format("{} over {}{:.3f} m; {} alignment on {}\n", counted(e.pairs, "pair"),
+  std::string table = fmt::format("{} over {}{:.3f} m; {} alignment on {}\n", quantity(e.pairs, "pair"),
                                   timed ? fmt::format("{:.2f} s and ", e.duration_s) : "", e.path_length_m,
                                   to_string(e.protocol.alignment), window_text(e.protocol.window));
   if (e.outside + e.in_gaps > 0) {
-    table += fmt::format("without ground truth: {} outside its time span, {} in its gaps\n", counted(e.outside, "pose"),
-                         e.in_gaps);
+    table += fmt::format("without ground truth: {} outside its time span, {} in its gaps\n",
+                         quantity(e.outside, "pose"), e.in_gaps);
   }
   table += fmt::format("  {:<22} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "rmse", "mean", "median", "std",
                        "min", "max");

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <string>
 
+#include "common/json_text.hpp"
 #include "edged/core/check.hpp"
-#include "run/run_album.hpp"
 
 namespace edged {
 namespace {

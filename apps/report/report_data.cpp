@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "common/config_source.hpp"
+#include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
@@ -37,7 +38,7 @@ struct LoadedRun {
   Json metrics, album, timing;
   std::optional<Calibration> given, found;
   std::optional<GroundTruth> truth;
-  ReportPath poses;
+  AlignedPath poses;
 };
 
 /// Null if it is missing, or truncated by a kill.
@@ -144,7 +145,7 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   Trajectory body = body_poses(run.states, &rows);
   leave_out_before_map(run, body, rows);
   run.poses =
-      lay_onto_truth(body, covariance_samples_of(run.states), rig_of(run), output_frame(run), run.truth, options.how);
+      align_with_truth(body, covariance_samples_of(run.states), rig_of(run), output_frame(run), run.truth, options.how);
   run.poses.rows = rows;
   return run;
 }
@@ -158,7 +159,7 @@ LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportO
   for (StampedPose& pose : body) pose = OutputFrame(rig, frame).to_body(pose);
   if (beside) run.truth = beside->truth;
   if (!options.truth.empty()) run.truth = GroundTruth{read_trajectory(options.truth), frame};
-  run.poses = lay_onto_truth(body, {}, rig, frame, run.truth, options.how);
+  run.poses = align_with_truth(body, {}, rig, frame, run.truth, options.how);
   for (std::size_t i = 0; i < body.size(); ++i) {
     run.states.t.push_back(body[i].t);
     run.states.status.push_back(TrackingStatus::Good);

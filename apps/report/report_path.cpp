@@ -12,7 +12,7 @@
 namespace edged {
 namespace {
 
-void add_truth(ReportPath& path, const GroundTruth& truth, const OutputFrame& frame, const Association& association) {
+void add_truth(AlignedPath& path, const GroundTruth& truth, const OutputFrame& frame, const Association& association) {
   for (std::size_t i = 0; i < path.shown.size(); ++i) {
     path.shown[i].T = path.alignment * path.shown[i].T;
     path.body[i].T = frame.to_body(path.shown[i]).T;
@@ -40,10 +40,10 @@ Rig rig_for_poses(const Rig& given, Rig found) {
   return found;
 }
 
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
-                          const std::string& frame_name, const std::optional<GroundTruth>& truth,
-                          const EvaluationOptions& how) {
-  ReportPath path;
+AlignedPath align_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
+                             const std::string& frame_name, const std::optional<GroundTruth>& truth,
+                             const EvaluationOptions& how) {
+  AlignedPath path;
   const OutputFrame frame(rig, truth ? truth->frame : frame_name);
   path.frame = frame.name();
   path.body = body;

@@ -16,7 +16,7 @@
 
 namespace edged {
 
-struct ReportPath {
+struct AlignedPath {
   std::string frame = "body";                 ///< whose pose `shown` is
   Trajectory shown;                           ///< in the world of the truth, else in that of the estimate
   Trajectory body;                            ///< the same of the body, on the IMU clock
@@ -37,8 +37,8 @@ Rig rig_for_poses(const Rig& given, Rig found);
 
 /// body: T_W_B. rig: as of rig_for_poses. frame: whose pose is shown without a truth, which has its own frame. samples:
 /// empty for a file.
-ReportPath lay_onto_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
-                          const std::string& frame, const std::optional<GroundTruth>& truth,
-                          const EvaluationOptions& how);
+AlignedPath align_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
+                             const std::string& frame, const std::optional<GroundTruth>& truth,
+                             const EvaluationOptions& how);
 
 }  // namespace edged

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/step_facts.hpp"
+#include "common/json_text.hpp"
+#include "common/step_numbers.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/io/parse/text_parsing.hpp"
@@ -27,7 +28,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Columns of the poses, by row of states.csv; NaN where a row has none.
 class PathColumns {
  public:
-  PathColumns(std::size_t rows, const ReportPath& path) {
+  PathColumns(std::size_t rows, const AlignedPath& path) {
     for (auto* group : {&p_, &angles_, &true_p_, &true_angles_}) group->assign(rows, Eigen::Vector3d::Constant(kNone));
     error_.assign(rows, kNone);
     rotation_.assign(rows, kNone);
@@ -102,12 +103,6 @@ constexpr std::array kStateColumns = {StateColumn{"vx_mps", "vx", 4},
 
 }  // namespace
 
-Json rounded(double value, int decimals) {
-  if (!std::isfinite(value)) return nullptr;
-  const double unit = std::pow(10.0, decimals);
-  return std::round(value * unit) / unit;
-}
-
 Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before) {
   const Eigen::Matrix3d R = T.R();
   Eigen::Vector3d angles(std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)),
@@ -135,7 +130,7 @@ std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vecto
   return chosen.size() > most + most / 2 ? even : chosen;
 }
 
-Json rows_json(const StatesTable& states, const ReportPath& path, Timestamp origin, std::size_t most) {
+Json rows_json(const StatesTable& states, const AlignedPath& path, Timestamp origin, std::size_t most) {
   const PathColumns poses(states.t.size(), path);
   const std::vector<std::size_t> chosen = chosen_rows(states, poses.error(), most);
   Json json = {{"t", Json::array()}, {"status", Json::array()}};

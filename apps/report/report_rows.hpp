@@ -13,9 +13,6 @@
 
 namespace edged {
 
-/// A number rounded to so many decimals, to save space as text; null if it is not finite.
-nlohmann::ordered_json rounded(double value, int decimals);
-
 /// Roll, pitch, yaw [deg] about x, y, z: R = Rz Ry Rx. Unwrapped: without jumps from one to the next.
 Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before);
 
@@ -23,7 +20,8 @@ Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before);
 std::vector<std::size_t> chosen_rows(const StatesTable& states, const std::vector<double>& error, std::size_t most);
 
 /// Times [s] since origin; null where a row has no pose.
-nlohmann::ordered_json rows_json(const StatesTable& states, const ReportPath& path, Timestamp origin, std::size_t most);
+nlohmann::ordered_json rows_json(const StatesTable& states, const AlignedPath& path, Timestamp origin,
+                                 std::size_t most);
 nlohmann::ordered_json pose_errors_json(const std::vector<PoseErrorSample>& pose_errors, Timestamp origin,
                                         std::size_t most);
 /// x, y, z of point after point in the world that is shown.

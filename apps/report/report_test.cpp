@@ -14,14 +14,15 @@
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
+#include "outputs/snapshots.hpp"
+#include "outputs/states.hpp"
 #include "report/point_cloud.hpp"
 #include "report/report_data.hpp"
 #include "report/report_page.hpp"
 #include "report/report_rows.hpp"
-#include "run/run_album.hpp"
+#include "run/estimated_calibration.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_summary.hpp"
-#include "run/run_writer.hpp"
 
 namespace edged {
 namespace {
@@ -63,22 +64,23 @@ class Report : public ::testing::Test {
       const Eigen::Vector3d p = step.state.T_W_B.translation() / 1.01 + Eigen::Vector3d(1.0, 2.0, 3.0);
       truth.trajectory.push_back({step.t, SE3(step.state.T_W_B.rotation(), p)});
       writer.add(step);
-      album.add(step);
+      snapshots.add(step);
     }
     RunSummary summary;
-    summary.recording = name;
-    summary.mode = "events";
-    summary.frame = "events";
-    summary.status = "good";
+    summary.run.recording = name;
+    summary.run.mode = summary.run.frame = "events";
+    summary.verdict.status = "good";
     const StatesTable states = read_states(folder);
     const Rig& rig = calibration.rig;
-    if (with_truth) evaluate_run(summary, body_poses(states), covariance_samples_of(states), rig, truth);
+    if (with_truth) summary.truth = compare_with_truth(body_poses(states), covariance_samples_of(states), rig, truth);
     write_file(folder / "calibration.yaml", to_yaml(calibration));
     write_file(folder / "config_resolved.yaml", options_with_one_changed());
     write_file(folder / "metrics.json", json_text(to_json(summary)));
     Rig found = calibration.rig;
     found.cameras[0].time_offset = std::chrono::milliseconds(3);
-    album.write(folder, calibration, found, with_truth ? std::optional(truth) : std::nullopt);
+    write_file(folder / "calibration_found.yaml", to_yaml(with_estimated(calibration, found)));
+    if (with_truth) write_tum(folder / "groundtruth.tum", snapshots.part_of_run(truth.trajectory));
+    write_file(folder / "album.json", snapshots.to_json(with_truth ? "events" : "", std::nullopt).dump());
     return folder;
   }
 
@@ -112,7 +114,7 @@ class Report : public ::testing::Test {
   }
 
   fs::path top;
-  RunAlbum album;
+  Snapshots snapshots;
 };
 
 TEST_F(Report, HoldsTheNumbersOfTheRun) {
@@ -229,9 +231,9 @@ TEST_F(Report, StaysSmallHoweverLongTheRun) {
   const fs::path folder = make_run("long", true, 12000);
   const nlohmann::json run = report_data({folder})["runs"][0];
   EXPECT_LE(run["rows"]["t"].size(), 3020u);
-  EXPECT_LE(run["pictures"].size(), RunAlbum::kMostPictures);
-  EXPECT_GE(run["pictures"].size(), RunAlbum::kMostPictures / 2);
-  EXPECT_LE(run["map"].size(), 3 * RunAlbum::kMostPoints);
+  EXPECT_LE(run["pictures"].size(), Snapshots::kMostPictures);
+  EXPECT_GE(run["pictures"].size(), Snapshots::kMostPictures / 2);
+  EXPECT_LE(run["map"].size(), 3 * Snapshots::kMostPoints);
   const auto& status = run["rows"]["status"];
   EXPECT_EQ(std::count(status.begin(), status.end(), "Lost"), 1);  // of one row in four
   EXPECT_LT(report_page(report_data({folder, folder})).size(), 5u << 20);

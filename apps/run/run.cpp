@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
@@ -17,6 +18,7 @@
 #include "report/states_table.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_reader.hpp"
+#include "run/verdict.hpp"
 
 namespace edged {
 namespace {
@@ -33,47 +35,58 @@ std::string config_text(const RunContext& run) {
          options_text(run.config);
 }
 
-RunSummary facts_of(const RunContext& run) {
+RunSummary begin_summary(const RunContext& run) {
   RunSummary summary;
-  summary.wall_s = run.meter.wall_s();
-  summary.cpu_s = run.meter.cpu_s();
-  summary.recording = run.info().name;
-  summary.format = run.info().format;
-  summary.mode = mode_name(run.mode);
-  summary.frame = run.frame.name();
-  summary.folder = run.folder.string();
-  summary.archive = run.archive.string();
-  summary.seed = run.source.seed;
+  summary.run = {run.info().name,     run.info().format,    mode_name(run.mode), run.frame.name(),
+                 run.folder.string(), run.archive.string(), run.source.seed,     run.config.odometry.map.localize_only};
+  summary.resources = {run.meter.wall_s(), run.meter.cpu_s()};
   summary.statistics = run.statistics;
-  summary.poses = run.statistics.poses();
   summary.repairs = run.source.dataset->repairs();
-  add_dropped(summary.repairs, run.odometry.counters());
   return summary;
+}
+
+/// What a later run in the folder may replace.
+std::vector<const char*> files_of(const std::vector<RunOutput>& outputs) {
+  std::vector<const char*> files{"calibration.yaml", "run.log"};
+  for (const RunOutput& output : outputs) files.insert(files.end(), output.files.begin(), output.files.end());
+  return files;
 }
 
 }  // namespace
 
-Run::Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config)
-    : run_(options, std::move(source), mode, config), truth_(read_truth(*run_.source.dataset)) {
-  if (options.live && run_.source.seed)
+Run::Run(RunContext& context, const std::vector<RunOutput>& outputs)
+    : run_(context),
+      odometry_(run_.source.calibration.rig, run_.source.calibration.imu, run_.mode, run_.config.odometry,
+                {kInOrder, run_.options.live ? Inference::OwnThread : Inference::Synchronous}),
+      truth_(read_truth(*run_.source.dataset)) {
+  if (run_.options.live && run_.source.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}",
                              run_.info().name);
-  observers_ = make_observers(run_);
-  make_folder();
+  for (const RunOutput& output : outputs)
+    if (auto observer = output.make(run_)) observers_.push_back(std::move(observer));
+  if (const InitialMap map = std::exchange(run_.products.get<InitialMap>(), {}); !map.bytes.empty()) {
+    try {
+      odometry_.load_map(map.bytes);
+    } catch (const InputError& e) {
+      throw InputError::format("{}: {}", map.file.string(), e.what());
+    }
+  }
+  update_context();
+  make_folder(outputs);
 }
 
-void Run::make_folder() {
+void Run::make_folder(const std::vector<RunOutput>& outputs) {
   const EarlierRun earlier = run_.options.force ? EarlierRun::Replace : EarlierRun::Keep;
   const std::string& archive = run_.options.archive;
   if (!archive.empty() && archive != kArchiveBeside)
     check_archive(run_.archive = archive, earlier);  // before the folder exists
   const std::filesystem::path wanted = run_folder_path(run_);
-  run_.folder = make_run_folder(wanted, earlier);
+  run_.folder = make_run_folder(wanted, earlier, files_of(outputs));
   if (archive == kArchiveBeside) {
     try {
       check_archive(run_.archive = beside(run_.folder, ".zip"), earlier);
     } catch (const InputError&) {
-      give_back_run_folder(run_.folder);
+      remove_new_run_folder(run_.folder);
       throw;
     }
   }
@@ -99,7 +112,7 @@ RunSummary Run::go() {
   });
   try {
     drive(
-        run_.odometry, [&] { return next_measurement(reader); },
+        odometry_, [&] { return next_measurement(reader); },
         [&](const Step& step) {
           observe(step, reader);
           return interrupt_signal() == 0;
@@ -122,14 +135,20 @@ std::optional<Measurement> Run::next_measurement(RunReader& reader) {
 }
 
 void Run::observe(const Step& step, RunReader& reader) {
-  run_.pace.processing_ms = 1e3 * run_.odometry.timings().find("process")->last_s();
+  run_.pace.processing_ms = 1e3 * odometry_.timings().find("process")->last_s();
   if (const auto latency_s = reader.note_result(step.t)) run_.pace.latency_ms = 1e3 * *latency_s;
   run_.statistics.add(step);
+  update_context();
   for (auto next = observers_.begin(); next != observers_.end();) {
     const std::string stage = (*next)->stage();
     const auto timer = run_.timings.measure(stage);
     for (; next != observers_.end() && (*next)->stage() == stage; ++next) (*next)->on_step(step);
   }
+}
+
+void Run::update_context() {
+  run_.rig = odometry_.rig();
+  run_.awaiting_relocalization = odometry_.awaiting_relocalization();
 }
 
 RunSummary Run::finish(RunReader& reader, bool broken_off) {
@@ -153,38 +172,44 @@ RunSummary Run::finish(RunReader& reader, bool broken_off) {
 }
 
 RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
+  update_context();
   RunEnd end;
-  end.summary = facts_of(run_);
-  end.summary.live = reader.live_summary();
+  end.counters = odometry_.counters();
+  end.covariances = calibration_covariances(odometry_);
+  end.save_map = [this] { return odometry_.save_map(); };
   end.truth = truth_.truth;
+  end.summary = begin_summary(run_);
+  add_dropped(end.summary.repairs, end.counters);
+  end.summary.live = reader.live_summary(end.counters);
   if (!truth_.problem.empty())
     end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be read: " + truth_.problem,
                                             "mend or remove the file: the run is compared with nothing"});
   for (const auto& observer : observers_) observer->on_summary(end);
   {
     const auto timer = run_.timings.measure("final_trajectory");
-    end.known = run_.odometry.final_trajectory();
+    end.final_trajectory = odometry_.final_trajectory();
   }
-  compare_with_truth(end);
+  end.timings = odometry_.timings();
+  compare(end);
   const Ending ending = broken_off                ? Ending::BrokenOff
                         : interrupt_signal() != 0 ? Ending::Interrupted
                                                   : Ending::Complete;
   judge_run(end.summary, run_.options.source, ending);
-  end.summary.peak_rss_mb = ResourceMeter::peak_rss_mb();
+  end.summary.resources.peak_rss_mb = ResourceMeter::peak_rss_mb();
   return end;
 }
 
-void Run::compare_with_truth(RunEnd& end) const {
-  const auto in_one_frame = [&end](Trajectory poses) {
-    if (end.in_map_since) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t < *end.in_map_since; });
-    return poses;
-  };
-  const Rig rig = run_.found_rig();
+void Run::compare(RunEnd& end) const {
+  if (!end.truth) return;
+  const Rig rig = run_.estimated_rig();
   const StatesTable states = read_states(run_.folder);
-  const Trajectory body = in_one_frame(body_poses(states));
-  if (end.truth && !body.empty()) evaluate_run(end.summary, body, covariance_samples_of(states), rig, *end.truth);
-  if (end.summary.evaluation) evaluate_final(end.summary, in_one_frame(end.known.poses), rig, *end.truth);
-  end.path = lay_onto_truth(body, {}, rig, run_.frame.name(), end.truth, {});
+  const Trajectory body = end.in_map(body_poses(states));
+  if (body.empty()) return;
+  TruthComparison& result = end.summary.truth;
+  result = compare_with_truth(body, covariance_samples_of(states), rig, *end.truth);
+  if (!result.evaluation) return;
+  const Trajectory final_poses = OutputFrame(rig, end.truth->frame)(end.in_map(end.final_trajectory.poses));
+  result.final_evaluation = evaluate(associate(end.truth->trajectory, final_poses), protocol("P3"));
 }
 
 }  // namespace edged

@@ -6,7 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "run/run_observer.hpp"
+#include "edged/odometry.hpp"
+#include "run/run_context.hpp"
 
 namespace edged {
 
@@ -15,19 +16,22 @@ class RunReader;
 /// One run from the first measurement to the complete files.
 class Run {
  public:
-  /// Makes the run folder; `options` must outlive the run. Throws InputError if it cannot run.
-  Run(const RunOptions& options, Source source, Mode mode, const RunConfig& config);
+  /// Makes the run folder; `context` must outlive the run. outputs: in the order of their calls. Throws InputError if
+  /// it cannot run.
+  Run(RunContext& context, const std::vector<RunOutput>& outputs);
   RunSummary go();
 
  private:
-  void make_folder();
+  void make_folder(const std::vector<RunOutput>& outputs);
   std::optional<Measurement> next_measurement(RunReader& reader);
   void observe(const Step& step, RunReader& reader);
+  void update_context();
   RunSummary finish(RunReader& reader, bool broken_off);
   RunEnd summarize(const RunReader& reader, bool broken_off);
-  void compare_with_truth(RunEnd& end) const;
+  void compare(RunEnd& end) const;
 
-  RunContext run_;
+  RunContext& run_;
+  Odometry odometry_;
   OwnTruth truth_;
   std::vector<std::unique_ptr<RunObserver>> observers_;
 };

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -18,29 +17,7 @@
 namespace edged {
 namespace {
 
-// The first is written before anything else and marks a folder as a run's.
-constexpr std::array kRunFiles = {"config_resolved.yaml",
-                                  "calibration.yaml",
-                                  "trajectory.tum",
-                                  "trajectory_euroc.csv",
-                                  "trajectory.kitti",
-                                  "states.csv",
-                                  "metrics.json",
-                                  "timing.json",
-                                  "overview.png",
-                                  "run.log",
-                                  "album.json",
-                                  "groundtruth.tum",
-                                  "calibration_found.yaml",
-                                  "report.html",
-                                  "trajectory_final.tum",
-                                  "keyframes.csv",
-                                  "map.ply",
-                                  "dense.ply",
-                                  "voxels.ply",
-                                  "pace.csv",
-                                  "results.mcap",
-                                  "external.csv"};
+constexpr const char* kMark = "config_resolved.yaml";  // written before anything else, marks a folder as a run's
 
 [[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::error_code& error) {
   throw InputError::format("{}: cannot be used as a run folder: {}; give another --out", folder.string(),
@@ -58,13 +35,12 @@ bool may_hold_a_run(const std::filesystem::path& folder) {
     throw InputError::format("{}: is a file, not a folder; give another --out", folder.string());
   const bool empty = fs::is_empty(folder, error);
   if (error) refuse_folder(folder, error);
-  return empty || fs::exists(folder / kRunFiles[0]);
+  return empty || fs::exists(folder / kMark);
 }
 
-/// All files but its mark.
-void empty_of_run(const std::filesystem::path& folder) {
-  for (const char* name : kRunFiles) {
-    if (name == kRunFiles[0]) continue;
+/// Removes these files of an earlier run.
+void remove_files(const std::filesystem::path& folder, const std::vector<const char*>& files) {
+  for (const char* name : files) {
     for (const std::filesystem::path& file : {folder / name, part_of(folder / name)}) {
       std::error_code error;
       std::filesystem::remove(file, error);
@@ -78,7 +54,7 @@ bool claim(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) refuse_folder(folder, error);
-  std::FILE* mark = std::fopen((folder / kRunFiles[0]).c_str(), "wx");  // only one of several concurrent runs succeeds
+  std::FILE* mark = std::fopen((folder / kMark).c_str(), "wx");  // only one of several concurrent runs succeeds
   if (mark != nullptr) return std::fclose(mark), true;
   if (errno != EEXIST) refuse_folder(folder, {errno, std::generic_category()});
   return false;
@@ -94,12 +70,13 @@ std::filesystem::path beside(const std::filesystem::path& folder, const std::str
   return plain += suffix;
 }
 
-std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier) {
+std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier,
+                                      const std::vector<const char*>& files) {
   if (!may_hold_a_run(wanted))
     throw InputError::format("{}: holds files, but no earlier run; give another --out", wanted.string());
   std::filesystem::path folder = wanted;
   if (earlier == EarlierRun::Replace) {
-    empty_of_run(folder);
+    remove_files(folder, files);
     claim(folder);
     return folder;
   }
@@ -108,9 +85,9 @@ std::filesystem::path make_run_folder(const std::filesystem::path& wanted, Earli
   return folder;
 }
 
-void give_back_run_folder(const std::filesystem::path& folder) {
+void remove_new_run_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
-  std::filesystem::remove(folder / kRunFiles[0], ignored);
+  std::filesystem::remove(folder / kMark, ignored);
   std::filesystem::remove(folder, ignored);  // fails where it is not empty
 }
 

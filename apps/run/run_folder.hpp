@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "common/cli_fwd.hpp"
 
@@ -14,12 +15,14 @@ namespace edged {
 enum class EarlierRun { Keep, Replace };
 
 /// Makes the folder and returns it. Where it holds an earlier run, that run's files are replaced, or it is kept and the
-/// folder gets a number: FOLDER-2, FOLDER-3, the first that is free. Concurrent runs never get the same folder. Throws
-/// InputError when the path is something else: a file, or a folder that holds things but no run.
-std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep);
+/// folder gets a number: FOLDER-2, FOLDER-3, the first that is free. files: those that a run may have left there.
+/// Concurrent runs never get one folder. Throws InputError when the path is something else: a file, or a folder that
+/// holds things but no run.
+std::filesystem::path make_run_folder(const std::filesystem::path& wanted, EarlierRun earlier = EarlierRun::Keep,
+                                      const std::vector<const char*>& files = {});
 
 /// For a run that does not begin: removes its mark, and the folder if it is then empty.
-void give_back_run_folder(const std::filesystem::path& folder);
+void remove_new_run_folder(const std::filesystem::path& folder);
 
 /// FOLDER with the suffix behind its name, also where it is written as FOLDER/ or `.`
 std::filesystem::path beside(const std::filesystem::path& folder, const std::string& suffix);

@@ -45,9 +45,9 @@ void RunReader::stop() {
   if (live_ || ahead_) run_.timings.put("read", live_ ? live_->reading() : ahead_->reading());
 }
 
-std::optional<LiveSummary> RunReader::live_summary() const {
+std::optional<LiveSummary> RunReader::live_summary(const OdometryCounters& counters) const {
   if (!live_) return std::nullopt;
-  return LiveSummary{live_->latency(), live_->shed(), run_.odometry.counters().packets.packets_overflow, live_->peaks(),
+  return LiveSummary{live_->latency(), live_->shed(), counters.packets.packets_overflow, live_->peaks(),
                      run_.config.live.max_age_s};
 }
 

@@ -9,13 +9,13 @@
 
 #include "edged/live/live_source.hpp"
 #include "edged/live/read_ahead.hpp"
-#include "run/run_observer.hpp"
+#include "run/run_context.hpp"
 
 namespace edged {
 
 class RunReader {
  public:
-  /// Starts to read. on_due: that of LiveSource, in a live run.
+  /// Starts to read. on_due: called by LiveSource, in a live run.
   RunReader(RunContext& run, std::function<void(const Measurement&)> on_due);
 
   /// Nothing at the end, or after an interrupt.
@@ -24,7 +24,7 @@ class RunReader {
   std::optional<double> note_result(Timestamp t);
   /// The dataset is no longer read.
   void stop();
-  std::optional<LiveSummary> live_summary() const;
+  std::optional<LiveSummary> live_summary(const OdometryCounters& counters) const;
 
  private:
   std::optional<Measurement> read();

@@ -10,10 +10,10 @@
 
 #include "commands.hpp"
 #include "commands/ros2_options.hpp"
-#include "common/counted.hpp"
 #include "common/interrupt.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
+#include "common/text.hpp"
 #include "dds/player.hpp"
 #include "edged/core/check.hpp"
 
@@ -42,10 +42,10 @@ void wait_for_subscribers(const ros2::Player& player, StatusLine& status) {
 
 void print_counters(const ros2::PlayCounters& counters) {
   std::string text =
-      fmt::format("sent {} in {}", counted(counters.events, "event"), counted(counters.messages, "message"));
+      fmt::format("sent {} in {}", quantity(counters.events, "event"), quantity(counters.messages, "message"));
   if (counters.dropped > 0)
-    text +=
-        fmt::format("; {} dropped, as subscribers did not keep up: lower --rate", counted(counters.dropped, "message"));
+    text += fmt::format("; {} dropped, as subscribers did not keep up: lower --rate",
+                        quantity(counters.dropped, "message"));
   std::puts(text.c_str());
 }
 

@@ -26,10 +26,10 @@ OnlineCalibration::OnlineCalibration(const Rig& given)
 
 void OnlineCalibration::update(const Window& window) {
   for (std::size_t camera = 0; camera < rig_.cameras.size(); ++camera) {
-    rig_.cameras[camera] = window.calibrated(camera);
-    intrinsics_[camera] = window.intrinsics(camera);
+    rig_.cameras[camera] = window.cameras()[camera].calibrated();
+    intrinsics_[camera] = window.cameras()[camera].intrinsics();
     if (!lens_models_[camera].holds(intrinsics_[camera], kLensTolerance))
-      lens_models_[camera] = {intrinsics_[camera], window.model(camera)};
+      lens_models_[camera] = {intrinsics_[camera], window.cameras()[camera].model()};
   }
 }
 

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "outputs/final_trajectory.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "common/files.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
+#include "run/run_context.hpp"
+
+namespace edged {
+namespace {
+
+std::string keyframes_csv(const std::vector<MappedKeyframe>& keyframes) {
+  std::string text =
+      "# keyframes of the map as known in the end: the body (IMU) in the world (z up), stamps on the IMU clock\n"
+      "t_ns,px_m,py_m,pz_m,qx,qy,qz,qw,camera,points,times_found,found_at_ns\n";
+  for (const MappedKeyframe& keyframe : keyframes) {
+    const Eigen::Vector3d& p = keyframe.T_W_B.translation();
+    const Eigen::Quaterniond& q = keyframe.T_W_B.rotation();
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", to_ns(keyframe.t), p.x(), p.y(), p.z(), q.x(), q.y(),
+                        q.z(), q.w(), keyframe.camera, keyframe.points.size(), keyframe.times_found,
+                        to_ns(keyframe.found_at));
+  }
+  return text;
+}
+
+class FinalTrajectoryFiles : public RunObserver {
+ public:
+  explicit FinalTrajectoryFiles(const RunContext& run) : run_(run) {}
+  void on_end(const RunEnd& end) override {
+    const OutputFrame frame = run_.estimated_frame();
+    write_final_trajectory(run_.folder, frame, end.final_trajectory,
+                           run_.heading(frame, "final: corrected by all map matches, not causal"));
+  }
+
+ private:
+  const RunContext& run_;
+};
+
+}  // namespace
+
+std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
+  std::size_t count = 0;
+  std::string vertices;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    for (const MappedKeyframe::Point& point : keyframes[k].points) {
+      if (!point.p_W.allFinite()) continue;
+      vertices += fmt::format("{:.5f} {:.5f} {:.5f} {} {} {} {} {} {}\n", point.p_W.x(), point.p_W.y(), point.p_W.z(),
+                              point.grey, point.grey, point.grey, k, point.tried, point.found);
+      ++count;
+    }
+  }
+  return fmt::format(
+             "ply\nformat ascii 1.0\ncomment points of the map in the world (z up) [m], as known in the end\n"
+             "comment keyframe: row of keyframes.csv; tried, found: images in which the point was looked for, found\n"
+             "element vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+             "property uchar green\nproperty uchar blue\nproperty int keyframe\nproperty int tried\n"
+             "property int found\nend_header\n",
+             count) +
+         vertices;
+}
+
+void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
+                            const std::vector<std::string>& comments) {
+  TrajectoryWriter tum(folder / "trajectory_final.tum", TrajectoryFormat::Tum, comments);
+  // The causal poses of a camera are read from states.csv, where each is normalized again: so are these, to be equal
+  // where nothing was corrected.
+  const bool again = frame.name() != "body";
+  for (const auto& [t, T] : known.poses) tum.add(frame({t, again ? SE3(T.rotation(), T.translation()) : T}));
+  tum.flush();
+  write_file(folder / "keyframes.csv", keyframes_csv(known.keyframes));
+  write_file(folder / "map.ply", map_ply(known.keyframes));
+}
+
+RunOutput final_trajectory_output() {
+  return always<FinalTrajectoryFiles>({"trajectory_final.tum", "keyframes.csv", "map.ply"});
+}
+
+}  // namespace edged
