@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-constexpr std::uint64_t kSeed = 11;
+constexpr int kSeed = 11;
 
-Flight flight(std::uint64_t seed = kSeed) { return simulate_flight("room", seed, 15.0); }
+const Flight& flight(int seed = kSeed) { return shared_flight("room", seed, 15.0); }
 
 /// About twice what is left: see the output.
 FlightRun follow(const Flight& flight, const Calibration& wrong, Mode mode, double ate_m, double scale_error) {
@@ -88,10 +88,10 @@ std::map<std::string, LeftOver> left_over(const Flight& flight, const FlightRun&
 
 /// The mean over three flights: what is left of an event camera's turn scatters between 0.06 and 0.3 deg.
 TEST_P(WrongCalibration, OfRotationAndTimeIsFound) {
-  constexpr std::uint64_t kFlights = 3;
+  constexpr int kFlights = 3;
   std::map<std::string, LeftOver> mean;
-  for (std::uint64_t seed = kSeed; seed < kSeed + kFlights; ++seed) {
-    const Flight recorded = flight(seed);
+  for (int seed = kSeed; seed < kSeed + kFlights; ++seed) {
+    const Flight& recorded = flight(seed);
     const FlightRun run = follow(recorded, turned_and_late(recorded.calibration), GetParam(), most_ate_m(), 0.05);
     for (const auto& [camera, left] : left_over(recorded, run, GetParam())) {
       mean[camera].turned_deg += left.turned_deg / kFlights;
@@ -105,7 +105,7 @@ TEST_P(WrongCalibration, OfRotationAndTimeIsFound) {
 }
 
 TEST_P(WrongCalibration, OfTheFocalLengthByAPercentIsBorne) {
-  const Flight recorded = flight();
+  const Flight& recorded = flight();
   for (const double factor : {0.99, 1.01}) {
     Calibration wrong = recorded.calibration;
     for (RigCamera& camera : wrong.rig.cameras) {

@@ -15,10 +15,7 @@ namespace edged {
 namespace {
 
 /// A turning, moving flight with its start at rest.
-const Flight& flight() {
-  static const Flight recorded = simulate_flight("room", 7, 5.0);
-  return recorded;
-}
+const Flight& flight() { return shared_flight("room", 7, 5.0); }
 
 /// Every number of a step but its stamp.
 std::vector<double> all_numbers_of(const Step& o) {

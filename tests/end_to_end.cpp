@@ -5,8 +5,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <tuple>
 #include <utility>
 
 #include "edged/camera/output_frame.hpp"
@@ -40,6 +42,13 @@ Flight simulate_flight(const std::string& preset, int seed, double duration_s) {
   config.seed = seed;
   config.duration_s = duration_s;
   return simulate_flight(config);
+}
+
+const Flight& shared_flight(const std::string& preset, int seed, double duration_s) {
+  static std::map<std::tuple<std::string, int, double>, Flight> rendered;
+  const auto [flight, is_new] = rendered.try_emplace({preset, seed, duration_s});
+  if (is_new) flight->second = simulate_flight(preset, seed, duration_s);
+  return flight->second;
 }
 
 Flight simulate_flight(const SimulatorConfig& config) {

@@ -28,6 +28,8 @@ struct Flight {
 Flight read_flight(Dataset& dataset, const Calibration& calibration);
 Flight simulate_flight(const SimulatorConfig& config);
 Flight simulate_flight(const std::string& preset, int seed, double duration_s);
+/// Rendered once a process, which takes three times as long as a run: for tests that share a flight.
+const Flight& shared_flight(const std::string& preset, int seed, double duration_s);
 
 /// What one run gave.
 struct FlightRun {

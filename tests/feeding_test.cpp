@@ -15,10 +15,7 @@ namespace edged {
 namespace {
 
 /// Slow at first, then turning and moving.
-const Flight& flight() {
-  static const Flight recorded = simulate_flight("room", 3, 4.0);
-  return recorded;
-}
+const Flight& flight() { return shared_flight("room", 3, 4.0); }
 
 TEST(Feeding, AFlightWhoseSensorsLagGivesTheBitsOfTheRecording) {
   const FlightRun wanted = run_flight(flight().calibration, flight().measurements, Mode::Fused);

@@ -44,7 +44,8 @@ Calibration masked(Calibration calibration) {
 class VehicleInView : public testing::TestWithParam<Mode> {};
 
 TEST_P(VehicleInView, IsNotSeenUnderTheMask) {
-  const Flight without = simulate_flight("room", 5, 8.0), flight = with_vehicle_in_view(without);
+  const Flight& without = shared_flight("room", 5, 8.0);
+  const Flight flight = with_vehicle_in_view(without);
   const Calibration calibration = masked(flight.calibration);
   const FlightRun run = run_flight(calibration, flight.measurements, GetParam());
   const FlightScore result = score(flight, run);
