@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/config_source.hpp"
 #include "edged/core/check.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 
 namespace edged {
 namespace {

@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/io/write_recording.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

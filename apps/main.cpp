@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
 #include "common/text.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 
 namespace {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/config_source.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/sim/simulator.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 
 namespace edged {
 namespace {

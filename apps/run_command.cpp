@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/run_source.hpp"
 #include "common/text.hpp"
+#include "program/commands.hpp"
 #include "run/run.hpp"
 #include "run/run_folder.hpp"
 #include "run_outputs.hpp"

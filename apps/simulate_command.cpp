@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/interrupt.hpp"
 #include "common/numbers.hpp"
 #include "common/status_line.hpp"
@@ -20,6 +19,7 @@
 #include "edged/io/write_recording.hpp"
 #include "edged/sim/simulated_pair.hpp"
 #include "edged/sim/simulator.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

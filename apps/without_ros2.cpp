@@ -3,8 +3,8 @@
 // The commands for ROS 2 in a program that was built without Cyclone DDS: they say so.
 #include <CLI/CLI.hpp>
 
-#include "commands.hpp"
 #include "edged/core/check.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

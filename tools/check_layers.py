@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that no file includes, and no module links, what the layer table in ARCHITECTURE.md does not allow, and that
+"""Checks that no file includes, and no module links, what the layer tables in ARCHITECTURE.md do not allow, and that
 no components include one another in a cycle, that public headers include no private ones, and that no two headers define
 a type of the same name.
 
@@ -19,9 +19,10 @@ import pathlib
 import re
 import sys
 
-ROW = re.compile(r"^\|\s*`(\w+)`\s*\|([^|]*)\|([^|]*)\|")
+ROW = re.compile(r"^\|\s*`([\w/]+)`\s*\|([^|]*)\|([^|]*)\|")
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 ROOTS = ("src", "toolbox")  # where "edged/module/..." is included from; the method's first
+OUTSIDE = ("apps", "ros", "python/src")  # C++ outside the modules
 PUBLIC = ("include", "toolbox/include")  # where public headers are, in the same order
 ANY_INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
 PUBLIC_INCLUDE = re.compile(r"\w+|Eigen/\w+|opencv2/core(/[\w/]+)?\.hpp")
@@ -31,16 +32,17 @@ IO_FOLDER = re.compile(r"edged/io/(\w+)/")
 IO_SHARED = ("archive", "parse", "core")  # folders of io that families share, bottom to top; its other folders are families
 
 
-def read_table(architecture):
-    """Module -> modules it may use, in the order of the table; public header -> its module; what is wrong with the table."""
+def read_table(architecture, what):
+    """Of the table of modules, or of folders: name -> names it may use, in the order of the table; public header -> its
+    module; what is wrong with the table."""
     allowed, public, errors, inside = {}, {}, [], False
     for number, line in enumerate(architecture.read_text().splitlines(), 1):
-        if re.match(r"^\|\s*module\s*\|\s*may use\s*\|", line):
+        if re.match(rf"^\|\s*{what}\s*\|\s*may use\s*\|", line):
             inside = True
         elif inside and not line.startswith("|"):
             break
         elif inside and (row := ROW.match(line)):
-            name, uses = row.group(1), re.findall(r"`(\w+)`", row.group(2))
+            name, uses = row.group(1), re.findall(r"`([\w/]+)`", row.group(2))
             errors += [f"{architecture.name}:{number}: `{name}` uses `{use}`, which has no row above it"
                        for use in uses if use not in allowed]
             allowed[name] = set(uses)
@@ -116,8 +118,8 @@ def check_public(root, public):
                 yield f"{file.relative_to(root)}:{number}: a public header may not include {included}"
 
 
-def check_cycles(root, folders, public):
-    """Cycles of components, no two of which share a step."""
+def uses_of_components(root, folders, public):
+    """Component -> components that it includes."""
     uses = {}
     for _, file, component in code_files(root, folders, public):
         if component.endswith("_test"):
@@ -128,6 +130,36 @@ def check_cycles(root, folders, public):
                 used = public_component(public[name], name)
             uses.setdefault(component, {})[str(used)] = None
         uses.get(component, {}).pop(component, None)
+    return uses
+
+
+def uses_of_folders(root, allowed, errors):
+    """The same of what lies outside the modules, tests apart, which includes its own from apps, from ros, or from beside
+    it. Adds to `errors` what the table of folders does not allow."""
+    uses = {}
+    for file in sorted(f for top in OUTSIDE for f in (root / top).rglob("*.[ch]pp") 
+                       if "tests" not in f.parts and not f.stem.endswith("_test")):
+        folder = file.parent.relative_to(root).as_posix()
+        if folder not in allowed:
+            errors.append(f"{file.relative_to(root)}: {folder} has no row in the table of folders of ARCHITECTURE.md")
+            continue
+        component = str(file.relative_to(root).with_suffix(""))
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            include = INCLUDE.match(line)
+            places = [base / include.group(1) for base in (root / "apps", root / "ros", file.parent)] if include else []
+            used = next(filter(pathlib.Path.is_file, places), None)
+            if not used:
+                continue
+            other = used.parent.relative_to(root).as_posix()
+            if other != folder and other not in allowed[folder]:
+                errors.append(f"{file.relative_to(root)}:{number}: {folder} may not include {other}")
+            uses.setdefault(component, {})[str(used.relative_to(root).with_suffix(""))] = None
+        uses.get(component, {}).pop(component, None)
+    return uses
+
+
+def check_cycles(uses):
+    """Cycles of components, no two of which share a step."""
     while True:
         try:
             return graphlib.TopologicalSorter(uses).prepare()
@@ -177,7 +209,9 @@ def check_links(root, folders, allowed):
 
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
-    allowed, public, errors = read_table(root / "ARCHITECTURE.md")
+    allowed, public, errors = read_table(root / "ARCHITECTURE.md", "module")
+    outside, _, wrong = read_table(root / "ARCHITECTURE.md", "folder")
+    errors += wrong
     folders = modules(root)
     if (root / "toolbox").is_dir():
         errors += [f"ARCHITECTURE.md: `{name}` stands in the table, but there is no edged/{name} in {' or '.join(ROOTS)}"
@@ -190,7 +224,8 @@ def main():
     errors += check_public_names(root, public, method)
     errors += check_includes(root, folders, public, allowed)
     errors += check_public(root, public)
-    errors += check_cycles(root, folders, public)
+    uses = uses_of_folders(root, outside, errors)
+    errors += check_cycles(uses_of_components(root, folders, public) | uses)
     errors += check_families(root, folders)
     errors += check_names(root, folders, public)
     errors += check_links(root, folders, allowed)

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
@@ -19,6 +18,7 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "program/commands.hpp"
 #include "run/estimated_calibration.hpp"
 #include "run/run_statistics.hpp"
 

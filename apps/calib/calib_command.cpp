@@ -19,13 +19,13 @@
 #include "calib/calib_refine.hpp"
 #include "calib/calib_target.hpp"
 #include "calib/calib_template.hpp"
-#include "commands.hpp"
 #include "common/text.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

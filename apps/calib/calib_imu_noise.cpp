@@ -11,7 +11,6 @@
 #include <optional>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -19,6 +18,7 @@
 #include "edged/checks/statistics/allan_deviation.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

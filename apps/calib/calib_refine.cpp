@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "calib/calib_check.hpp"
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -21,6 +20,7 @@
 #include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/calibration_prior.hpp"
 #include "edged/pipeline/mode.hpp"
+#include "program/commands.hpp"
 #include "run/estimated_calibration.hpp"
 
 namespace edged {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "calib/target_result.hpp"
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -26,6 +25,7 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/target/print.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/depth/network.hpp"
 #include "edged/events/voxel_grid.hpp"
 #include "edged/options/depth.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -17,6 +16,7 @@
 #include "edged/checks/checks.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

@@ -7,12 +7,12 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/core/geometry.hpp"
 #include "inspect/survey.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/json_text.hpp"
 #include "common/text.hpp"
@@ -19,6 +18,7 @@
 #include "edged/map/map_merge.hpp"
 #include "outputs/final_trajectory.hpp"
 #include "outputs/map.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

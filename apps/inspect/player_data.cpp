@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <utility>
 
 #include "common/even_sample.hpp"

@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/json_text.hpp"
@@ -24,7 +23,8 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/event_pictures.hpp"
 #include "inspect/player_data.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 #include "report/report_page.hpp"
 
 namespace edged {

@@ -18,7 +18,7 @@
 
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/report_page.hpp"
 #include "run/run_context.hpp"
 

@@ -12,7 +12,7 @@
 #include "common/pictures.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/undistort.hpp"
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/report_path.hpp"
 #include "report/states_table.hpp"
 #include "run/run_context.hpp"

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/numbers.hpp"
 #include "common/source.hpp"
 #include "common/text.hpp"
@@ -21,6 +20,7 @@
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
+#include "program/commands.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/files.hpp"
 #include "common/json_text.hpp"
+#include "program/commands.hpp"
 #include "report/report_data.hpp"
 #include "report/report_page.hpp"
 

@@ -17,7 +17,7 @@
 #include "edged/core/path_length.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/point_cloud.hpp"
 #include "report/report_rows.hpp"
 

@@ -14,7 +14,7 @@
 #include "common/log.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/archive/zip_writer.hpp"
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/states_table.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_reader.hpp"

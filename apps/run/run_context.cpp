@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/report_path.hpp"
 
 namespace edged {

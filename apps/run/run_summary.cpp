@@ -14,7 +14,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
-#include "program.hpp"
+#include "program/program.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "dense_flight.hpp"
 #include "edged/config.hpp"
 #include "edged/options.hpp"
 #include "edged/sim/simulated_pair.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 
 namespace edged {
 namespace {

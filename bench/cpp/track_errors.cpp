@@ -9,13 +9,13 @@
 #include <fstream>
 #include <map>
 
-#include "commands.hpp"
 #include "common/config_source.hpp"
 #include "common/source.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/odometry.hpp"
-#include "program.hpp"
+#include "program/commands.hpp"
+#include "program/program.hpp"
 #include "track_truth.hpp"
 
 namespace edged {

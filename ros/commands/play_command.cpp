@@ -8,7 +8,6 @@
 #include <memory>
 #include <thread>
 
-#include "commands.hpp"
 #include "commands/ros2_options.hpp"
 #include "common/interrupt.hpp"
 #include "common/source.hpp"
@@ -16,6 +15,7 @@
 #include "common/text.hpp"
 #include "dds/player.hpp"
 #include "edged/core/check.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

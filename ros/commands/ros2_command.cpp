@@ -9,7 +9,6 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
 #include "commands/ros2_options.hpp"
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
@@ -17,6 +16,7 @@
 #include "dds/ros2_transport.hpp"
 #include "edged/core/check.hpp"
 #include "node/node.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {

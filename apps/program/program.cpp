@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "program.hpp"
+#include "program/program.hpp"
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
@@ -17,11 +17,11 @@
 #include <system_error>
 #include <vector>
 
-#include "commands.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "edged/config.hpp"
 #include "edged/core/check.hpp"
+#include "program/commands.hpp"
 
 namespace edged {
 namespace {
