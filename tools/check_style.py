@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks licence lines, header guards, the sizes of files and functions, names that sources share, and our own format
-(.clang-format).
+"""Checks licence lines, header guards, the sizes of files and functions, names that sources share, the letter of the map
+frame, and our own format (.clang-format).
 
 Usage: check_style.py [ROOT]; prints warnings and errors, exits 1 if there is an error. Sizes above the first number are a
 warning: a place to look. Above the second they are an error.
@@ -23,6 +23,8 @@ MODULES = ("src", "toolbox", "apps", "python", "ros")
 CONSTANTS = re.compile(r"^constexpr [^;]*;", re.MULTILINE)
 CONSTANT = re.compile(r"(?<!= )\b(k[A-Z]\w*)(?= = |\(|\{|\[)")
 CLASS = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?(?: : [^{;]*)? \{", re.MULTILINE)
+# W is the public API's name of the map frame: sources of the method say O or M, but where they meet that API.
+WORLD, WORLD_EDGES = re.compile(r"\bT_W_\w+"), {"output_frame", "state_prediction"}
 # What holds functions. A brace after '=' outside a function opens a list of values; every other one there a function.
 CONTAINER = re.compile(r"\s*(template\s*<.*>\s*)?(namespace|class|struct|union|enum|extern)\b", re.DOTALL)
 NOT_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|^\s*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\])*"|(?<![0-9A-Fa-f])'(?:\\.|[^'\\])'""",
@@ -68,6 +70,9 @@ def check(path, name, errors, warnings):
             errors.append(f"{name}: no #pragma once")
         if len(lines) < 3 or not lines[2].startswith("// "):
             errors.append(f"{name}:3: says in no sentence what the file is")
+    if name.parts[0] == "src" and "test" not in path.stem and path.stem not in WORLD_EDGES:
+        errors += [f"{name}:{line}: {word} within the method: the frame is O or M (docs/decisions/031-coordinate-frames.md)"
+                   for line, text_line in enumerate(lines, 1) for word in WORLD.findall(text_line)]
     for (soft, hard), what, sizes in ((FILE_LINES, "file", [(1, len(lines))]),
                                       (FUNCTION_LINES, "function", functions(text))):
         for line, size in sizes:
