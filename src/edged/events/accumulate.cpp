@@ -130,9 +130,4 @@ cv::Mat EventFrameRenderer::finish(const cv::Mat& sum, double scale, double zero
   return finished;
 }
 
-cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
-                           const UndistortTable& table, const EventFrameConfig& config) {
-  return EventFrameRenderer(table, config).render(events, motion, depth).image;
-}
-
 }  // namespace edged

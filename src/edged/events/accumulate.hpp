@@ -49,8 +49,4 @@ class EventFrameRenderer {
   cv::Mat sum_, difference_, blurred_;
 };
 
-/// The image of an event frame, for a single use.
-cv::Mat render_event_frame(std::span<const Event> events, const CameraMotion& motion, double depth,
-                           const UndistortTable& table, const EventFrameConfig& config);
-
 }  // namespace edged

@@ -63,7 +63,8 @@ TEST(EventFrame, SaturatesAtTheGivenNumberOfEvents) {
   EventFrameConfig config;
   config.saturation_events = 4.0;
   config.blur_sigma_px = 0.0;
-  const cv::Mat frame = render_event_frame(events, CameraMotion(), 1.0, UndistortTable(kCamera, kCamera), config);
+  const cv::Mat frame =
+      EventFrameRenderer(UndistortTable(kCamera, kCamera), config).render(events, CameraMotion(), 1.0).image;
   ASSERT_EQ(frame.type(), CV_8UC1);
   EXPECT_EQ(frame.size(), cv::Size(120, 90));
   EXPECT_EQ(frame.at<unsigned char>(50, 10), 64);
@@ -78,7 +79,8 @@ TEST(EventFrame, BlurKeepsTheSumAndLowersThePeak) {
   EventFrameConfig config;
   config.saturation_events = 255.0;
   config.blur_sigma_px = 1.0;
-  const cv::Mat frame = render_event_frame(events, CameraMotion(), 1.0, UndistortTable(kCamera, kCamera), config);
+  const cv::Mat frame =
+      EventFrameRenderer(UndistortTable(kCamera, kCamera), config).render(events, CameraMotion(), 1.0).image;
   EXPECT_NEAR(cv::sum(frame)[0], 40.0, 6.0);  // rounding to whole grey values
   EXPECT_LT(frame.at<unsigned char>(45, 60), 10);
   EXPECT_GT(frame.at<unsigned char>(45, 61), 0);

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <iterator>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "edged/core/check.hpp"
 #include "edged/events/tuning.hpp"
@@ -79,6 +82,13 @@ cv::Mat scharr(const cv::Mat& image, const EnhanceConfig& config) {
   return magnitude(gx, gy, config.norm, config.edge_gain / kScharrPerSlope);
 }
 
+/// A row of the table of edge filters.
+struct EdgeFilter {
+  EdgeMethod method;
+  std::string_view name;                                               ///< the option's choice
+  cv::Mat (*find)(const cv::Mat& image, const EnhanceConfig& config);  ///< I_edge; null: no enhancement
+};
+
 constexpr EdgeFilter kEdgeFilters[] = {
     {EdgeMethod::None, "none", nullptr}, {EdgeMethod::Clahe, "clahe", equalised_alone},
     {EdgeMethod::Canny, "canny", canny}, {EdgeMethod::Laplacian, "laplacian", laplacian},
@@ -96,32 +106,7 @@ cv::Mat erode(const cv::Mat& edges, int kernel_px) {
   return thin;
 }
 
-/// Algorithm 1; calls note(name, image) after each of its steps.
-template <typename Note>
-cv::Mat run_algorithm(const cv::Mat& event_frame, const EnhanceConfig& config, Note&& note) {
-  EDGED_CHECK(event_frame.type() == CV_8UC1, "event frame of type {}", event_frame.type());
-  note("event_frame", event_frame);
-  if (config.method == EdgeMethod::None) {
-    note("result", event_frame);
-    return event_frame;
-  }
-  cv::Mat blurred = event_frame;
-  if (config.blur_sigma_px > 0.0) note("blur", blurred = gaussian(event_frame, config.blur_sigma_px));
-  cv::Mat image = blurred;
-  if (config.clahe_clip > 0.0) note("clahe", image = equalise(blurred, config));
-  if (config.sharpening != Sharpening::None) note("sharpened", image = sharpen(image, blurred, config));
-  cv::Mat edges = find_edges(image, config);
-  note("edge", edges);
-  if (config.erosion_px > 0) note("eroded", edges = erode(edges, config.erosion_px));
-  cv::Mat result;
-  cv::addWeighted(event_frame, config.event_weight, edges, config.edge_weight, 0.0, result);
-  note("result", result);
-  return result;
-}
-
 }  // namespace
-
-std::span<const EdgeFilter> edge_filters() { return kEdgeFilters; }
 
 void EnhanceConfig::visit(ConfigFields& fields) {
   std::vector<std::pair<std::string_view, EdgeMethod>> methods;
@@ -182,15 +167,15 @@ void EnhanceConfig::validate(const std::function<std::string(std::string_view)>&
 }
 
 cv::Mat enhance(const cv::Mat& event_frame, const EnhanceConfig& config) {
-  return run_algorithm(event_frame, config, [](const char*, const cv::Mat&) {});
-}
-
-std::vector<EnhanceStage> enhancement_stages(const cv::Mat& event_frame, const EnhanceConfig& config) {
-  std::vector<EnhanceStage> stages;
-  run_algorithm(event_frame, config, [&stages](const char* name, const cv::Mat& image) {
-    stages.push_back({name, image.clone()});
-  });
-  return stages;
+  EDGED_CHECK(event_frame.type() == CV_8UC1, "event frame of type {}", event_frame.type());
+  if (config.method == EdgeMethod::None) return event_frame;
+  const cv::Mat blurred = config.blur_sigma_px > 0.0 ? gaussian(event_frame, config.blur_sigma_px) : event_frame;
+  cv::Mat image = config.clahe_clip > 0.0 ? equalise(blurred, config) : blurred;
+  if (config.sharpening != Sharpening::None) image = sharpen(image, blurred, config);
+  cv::Mat edges = find_edges(image, config), result;
+  if (config.erosion_px > 0) edges = erode(edges, config.erosion_px);
+  cv::addWeighted(event_frame, config.event_weight, edges, config.edge_weight, 0.0, result);
+  return result;
 }
 
 }  // namespace edged
