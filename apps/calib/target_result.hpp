@@ -9,7 +9,7 @@
 
 #include "edged/calibrate/coverage.hpp"
 #include "edged/calibrate/rig_fit.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 #include "edged/target/target.hpp"
 
 namespace edged {

@@ -22,11 +22,10 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/geometry.hpp"
-#include "edged/io/core/imu_on_other_clock.hpp"
-#include "edged/io/core/truth_file.hpp"
+#include "edged/io/core/replaced_streams.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/text/external_text.hpp"
-#include "edged/io/text/imu_text.hpp"
+#include "edged/io/parse/text_parsing.hpp"
+#include "edged/io/text/sample_files.hpp"
 #include "edged/sim/dimmed_frames.hpp"
 #include "edged/sim/simulated_pair.hpp"
 
@@ -194,8 +193,8 @@ Recording open_uncalibrated(const SourceOptions& options) {
   Recording recording = open_with_files(options);
   if (options.imu_clock_rate != 1.0) {
     if (is_live(options)) throw InputError("--imu-clock-rate: a live source can be read once only");
-    recording.dataset = std::make_unique<ImuOnOtherClock>(std::move(recording.dataset),
-                                                          open_with_files(options).dataset, options.imu_clock_rate);
+    recording.dataset =
+        with_imu_clock_rate(std::move(recording.dataset), open_with_files(options).dataset, options.imu_clock_rate);
   }
   PieceBounds piece = options.piece;
   if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;

@@ -97,7 +97,7 @@ TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
     EXPECT_EQ(writer.poses(), 2u);
   }
   EXPECT_EQ(read_tum(folder / "trajectory.tum").size(), 2u);
-  EXPECT_EQ(read_euroc_csv(folder / "trajectory_euroc.csv").size(), 2u);
+  EXPECT_EQ(read_poses(folder / "trajectory_euroc.csv", euroc_table()).size(), 2u);
   EXPECT_EQ(lines("trajectory.kitti"), std::vector<std::string>(2, "1 0 0 0 0 1 0 0 0 0 1 0"));
   EXPECT_EQ(lines("trajectory.tum")[0], "# first comment");
   const std::vector<std::string> states = lines("states.csv");

@@ -13,7 +13,7 @@
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/archive/zip_writer.hpp"
+#include "edged/io/archive/zip_archive.hpp"
 #include "program/program.hpp"
 #include "report/states_table.hpp"
 #include "run/run_folder.hpp"

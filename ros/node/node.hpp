@@ -11,7 +11,7 @@
 #include <mutex>
 #include <set>
 
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 #include "edged/odometry.hpp"
 #include "node/autopilot_outputs.hpp"
 #include "node/backlog.hpp"

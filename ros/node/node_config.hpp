@@ -6,7 +6,7 @@
 #include <string>
 
 #include "edged/autopilot/autopilot_config.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/input/sequencer.hpp"
 

@@ -3,6 +3,7 @@
 // Finds, checks and prints calibrations.
 #include "edged/io/calibration.hpp"
 
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "edged/camera/field_of_view.hpp"
@@ -10,9 +11,8 @@
 #include "edged/core/check.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
-#include "edged/io/calib/mask.hpp"
-#include "edged/io/calib/plausibility.hpp"
 #include "edged/io/core/calibration_source.hpp"
+#include "edged/io/core/camera_names.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
@@ -69,10 +69,10 @@ std::vector<std::string> known_rigs() {
 Calibration load_rig(const std::string& name_or_path) {
   if (const auto file = find_resource("rigs", name_or_path, ".yaml")) return load_calibration(*file);
   if (fs::exists(name_or_path)) return load_calibration(name_or_path);
-  std::string known;
-  for (const std::string& name : known_rigs()) known += (known.empty() ? "" : ", ") + name;
+  std::vector<std::string> known = known_rigs();
+  if (known.empty()) known = {"none (set EDGED_RIGS to a folder of rig files)"};
   throw InputError::format("rig \"{}\": not known, and no such file; there are: {}", name_or_path,
-                           known.empty() ? "none (set EDGED_RIGS to a folder of rig files)" : known);
+                           fmt::join(known, ", "));
 }
 
 std::string describe(const Calibration& calibration) {
@@ -80,8 +80,8 @@ std::string describe(const Calibration& calibration) {
   for (const RigCamera& camera : calibration.rig.cameras) {
     const CameraModel& m = camera.model;
     out += fmt::format("camera {} ({}): {} x {} px, fx {:.3f} fy {:.3f} cx {:.3f} cy {:.3f}, distortion {}\n",
-                       camera.name, camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
-                       m.fx(), m.fy(), m.cx(), m.cy(), to_string(m.distortion()));
+                       camera.name, kind_name(camera.modality), m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy(),
+                       to_string(m.distortion()));
     const FieldOfView view = field_of_view(m);
     out += fmt::format("  field of view {:.1f} deg across, {:.1f} deg down, {:.1f} deg corner to corner\n",
                        view.horizontal * kDegreesPerRadian, view.vertical * kDegreesPerRadian,

@@ -19,15 +19,13 @@
 #include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/hdf5/hdf5.hpp"
-#include "edged/io/loose_folder.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/ros/ros.hpp"
-#include "edged/io/text/ecd.hpp"
-#include "edged/io/text/euroc.hpp"
+#include "edged/io/single_file_folder.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 #include "edged/io/text/event_csv.hpp"
-#include "edged/io/text/external_text.hpp"
-#include "edged/io/text/imu_text.hpp"
+#include "edged/io/text/sample_files.hpp"
 
 namespace edged {
 namespace {
@@ -66,8 +64,8 @@ Recording open_main_file(const SourcePath& file, const Rig* rig, const Recording
 
 /// The only recording of the folder, with the IMU file and the calibration.yaml of the folder, if any. Logs what is not
 /// read.
-Recording open_loose_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
-                            const RecordingOptions& options) {
+Recording open_single_file_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
+                                  const RecordingOptions& options) {
   std::set<std::string> read = {file, "calibration.yaml"};
   if (const auto path = folder.disk_path())
     for (const auto& part : split_bag_parts(*path / file)) read.insert(part.filename().string());
@@ -95,7 +93,7 @@ Recording open_loose_folder(const SourcePath& folder, const std::string& file, c
   }
   if (calibration) recording.calibration = std::move(calibration);
   read.merge(external_file_names());
-  tell_unread(folder, read);
+  warn_unread(folder, read);
   recording.dataset = with_external_files(std::move(recording.dataset), folder);
   return recording;
 }
@@ -121,9 +119,9 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
   // An imu.txt alone does not identify the Event-Camera Dataset if another file has the events.
   const bool imu_alone = !(folder / "events.txt").is_file() && !find_ecd_image_list(folder);
   if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
-    return open_loose_folder(folder, *file, rig, options);
+    return open_single_file_folder(folder, *file, rig, options);
   Recording recording = open_ecd(folder, rig, options);
-  // Those of further cameras are known, even if the run uses the first only.
+  // Files of further cameras are known, even if the run uses the first only.
   std::set<std::string> read;
   for (std::size_t i = 0; i == 0 || (folder / ("events" + ecd_number(i) + ".txt")).is_file(); ++i)
     read.insert("events" + ecd_number(i) + ".txt");
@@ -134,7 +132,7 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
   }
   read.insert({"imu.txt", "groundtruth.txt", "calib.txt", "calibration.yaml", "depthmaps.txt", "depthmaps"});
   read.merge(external_file_names());
-  tell_unread(folder, read);
+  warn_unread(folder, read);
   recording.dataset = with_external_files(std::move(recording.dataset), folder);
   return recording;
 }
@@ -154,12 +152,13 @@ std::optional<Recording> try_hdf5_folder(const SourcePath& folder, const Rig* ri
   Recording recording = open_hdf5(*file, rig, options);
   const DatasetInfo& info = recording.dataset->info();
   const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == *path;  // no data set with side files
-  return bare ? open_loose_folder(folder, file->filename().string(), rig, options) : std::move(recording);
+  return bare ? open_single_file_folder(folder, file->filename().string(), rig, options) : std::move(recording);
 }
 
-std::optional<Recording> try_loose_folder(const SourcePath& folder, const Rig* rig, const RecordingOptions& options) {
+std::optional<Recording> try_single_file_folder(const SourcePath& folder, const Rig* rig,
+                                                const RecordingOptions& options) {
   const auto file = find_main_file(folder, is_alone_format);
-  return file ? std::optional(open_loose_folder(folder, *file, rig, options)) : std::nullopt;
+  return file ? std::optional(open_single_file_folder(folder, *file, rig, options)) : std::nullopt;
 }
 
 /// A format of folders that file names identify.
@@ -186,7 +185,7 @@ std::optional<Recording> try_named_folder(const SourcePath& folder, const Rig* r
 /// The archive is the folder of the recording, or contains it.
 Recording open_archive(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const SourcePath top = SourcePath::in_archive(file);
-  for (const auto attempt : {try_named_folder, try_loose_folder}) {
+  for (const auto attempt : {try_named_folder, try_single_file_folder}) {
     if (auto recording = attempt(top, rig, options)) return std::move(*recording);
     std::optional<Recording> found;
     for (const std::string& name : top.names()) {
@@ -222,7 +221,7 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
 }
 
 Recording open_folder(const std::filesystem::path& folder, const Rig* rig, const RecordingOptions& options) {
-  for (const auto attempt : {try_named_folder, try_loose_folder})
+  for (const auto attempt : {try_named_folder, try_single_file_folder})
     if (auto recording = attempt(folder, rig, options)) return std::move(*recording);
   std::vector<std::string_view> files, names;
   for (const FolderFormat& format : kFolderFormats) files.push_back(format.files);

@@ -18,7 +18,7 @@
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/ros.hpp"
-#include "edged/io/text/ecd_writer.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 #include "edged/io/text/event_csv.hpp"
 
 namespace edged {
@@ -26,47 +26,19 @@ namespace {
 
 constexpr Duration kMicrosecond = std::chrono::microseconds(1);
 
+constexpr WritableContents kEventData, kCameraData{.frames = true, .imu = true, .several_cameras = true},
+    kTruthData{.frames = true, .imu = true, .ground_truth = true, .several_cameras = true},
+    kAllData{.frames = true, .imu = true, .ground_truth = true, .external = true, .several_cameras = true};
+
 constexpr std::array kWritable = {
-    WritableFormat{.name = "ecd",
-                   .extension = "",
-                   .frames = true,
-                   .imu = true,
-                   .ground_truth = true,
-                   .external = true,
-                   .several_cameras = true,
-                   .open = write_ecd},
-    WritableFormat{.name = "raw", .extension = ".raw", .tick = kMicrosecond, .open = write_raw},
-    WritableFormat{.name = "dat", .extension = ".dat", .tick = kMicrosecond, .open = write_dat},
-    WritableFormat{.name = "aedat4",
-                   .extension = ".aedat4",
-                   .frames = true,
-                   .imu = true,
-                   .several_cameras = true,
-                   .tick = kMicrosecond,
-                   .open = write_aedat4},
-    WritableFormat{.name = "csv", .extension = ".csv", .open = write_csv},
-    WritableFormat{.name = "bag",
-                   .extension = ".bag",
-                   .frames = true,
-                   .imu = true,
-                   .ground_truth = true,
-                   .several_cameras = true,
-                   .open = write_ros1_bag},
-    WritableFormat{.name = "mcap",
-                   .extension = ".mcap",
-                   .frames = true,
-                   .imu = true,
-                   .ground_truth = true,
-                   .several_cameras = true,
-                   .open = write_mcap},
-    WritableFormat{.name = "hdf5",
-                   .extension = ".h5",
-                   .frames = true,
-                   .imu = true,
-                   .ground_truth = true,
-                   .several_cameras = true,
-                   .tick = kMicrosecond,
-                   .open = write_hdf5},
+    WritableFormat{kAllData, "ecd", "", Duration(1), write_ecd},
+    WritableFormat{kEventData, "raw", ".raw", kMicrosecond, write_raw},
+    WritableFormat{kEventData, "dat", ".dat", kMicrosecond, write_dat},
+    WritableFormat{kCameraData, "aedat4", ".aedat4", kMicrosecond, write_aedat4},
+    WritableFormat{kEventData, "csv", ".csv", Duration(1), write_csv},
+    WritableFormat{kTruthData, "bag", ".bag", Duration(1), write_ros1_bag},
+    WritableFormat{kTruthData, "mcap", ".mcap", Duration(1), write_mcap},
+    WritableFormat{kTruthData, "hdf5", ".h5", kMicrosecond, write_hdf5},
 };
 
 /// Passes the measurements that the format can hold to the writer, and counts all.

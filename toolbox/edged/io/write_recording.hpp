@@ -16,12 +16,16 @@
 
 namespace edged {
 
-struct WritableFormat {
-  std::string_view name;       ///< "ecd"
-  std::string_view extension;  ///< of files, with its dot; "" for a folder
-  bool frames = false, imu = false, ground_truth = false, external = false;  ///< what it holds besides events
-  bool several_cameras = false;                                              ///< of a kind
-  Duration tick = Duration(1);                                               ///< unit of the stamps of events
+/// What a format holds besides events.
+struct WritableContents {
+  bool frames = false, imu = false, ground_truth = false, external = false;
+  bool several_cameras = false;  ///< several cameras of a kind
+};
+
+struct WritableFormat : WritableContents {
+  std::string_view name;        ///< "ecd"
+  std::string_view extension;   ///< with its dot; "" for a folder
+  Duration tick = Duration(1);  ///< unit of the stamps of events
   std::unique_ptr<RecordingWriter> (*open)(const WriterSetup& setup) = nullptr;
 };
 

@@ -14,8 +14,8 @@ namespace edged {
 
 /// Items of one stream, T with a `time_of`, within 146 years of zero, go through it one by one. One far
 /// ahead of all before is held until another confirms it; it is dropped when the next contradicts it. It holds one
-/// item, because live streams cannot wait. AheadGate, for recordings, holds a run of items and finds jumps of half a
-/// second.
+/// item, because live streams cannot wait. StampJumpFilter, for recordings, holds a run of items and finds jumps of
+/// half a second.
 template <typename T>
 class JumpGate {
  public:

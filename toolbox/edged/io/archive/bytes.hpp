@@ -72,6 +72,15 @@ void append_number(std::string& bytes, T value) {
   bytes.append(raw, sizeof value);
 }
 
+/// The bytes of a file, from its beginning on.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  /// Reads bytes into `to` and returns their number, 0 only at the end of the file. Throws Damage for a damaged
+  /// archive, InputError for an error of the file system.
+  virtual std::size_t read(std::span<char> to) = 0;
+};
+
 /// A file for random access.
 class BinaryFile {
  public:

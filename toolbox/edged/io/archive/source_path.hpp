@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/archive/byte_source.hpp"
 #include "edged/io/archive/bytes.hpp"
 
 namespace edged {

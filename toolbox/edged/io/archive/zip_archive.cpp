@@ -45,8 +45,7 @@ class ZipSource final : public ByteSource {
   std::unique_ptr<zip_file_t, Close> file_;
 };
 
-}  // namespace
-
+/// The text of libzip for the number of an error.
 std::string zip_reason(int error) {
   zip_error_t text;
   zip_error_init_with_code(&text, error);
@@ -54,6 +53,22 @@ std::string zip_reason(int error) {
   zip_error_fini(&text);
   return reason;
 }
+
+[[noreturn]] void refuse_zip(const fs::path& file, const std::string& reason) {
+  throw InputError::format("{}: cannot be written: {}", file.string(), reason);
+}
+
+/// Sorted by name, so that the same files give the same archive.
+std::vector<fs::path> files_below(const fs::path& folder, const fs::path& but) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && !(fs::exists(but) && fs::equivalent(entry.path(), but)))
+      files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
 
 ZipArchive::ZipArchive(const fs::path& file) : file_(file) {
   int error = 0;
@@ -109,6 +124,25 @@ std::unique_ptr<ByteSource> ZipArchive::open(const fs::path& path) {
 
 bool is_zip(ByteSpan head) {
   return as_text(head).starts_with("PK\x03\x04") || as_text(head).starts_with("PK\x05\x06");
+}
+
+void zip_folder(const fs::path& file, const fs::path& folder) {
+  const std::vector<fs::path> files = files_below(folder, file);
+  int error = 0;
+  zip_t* opened = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
+  if (!opened) refuse_zip(file, zip_reason(error));
+  std::unique_ptr<zip_t, decltype(&zip_discard)> archive(opened, zip_discard);
+  const fs::path whole = fs::canonical(folder);
+  for (const fs::path& from : files) {
+    const std::string name = (whole.filename() / from.lexically_relative(folder)).generic_string();
+    zip_source_t* source = zip_source_file(archive.get(), from.c_str(), 0, -1);
+    if (!source || zip_file_add(archive.get(), name.c_str(), source, ZIP_FL_ENC_UTF_8) < 0) {
+      zip_source_free(source);
+      refuse_zip(file, zip_strerror(archive.get()));
+    }
+  }
+  if (zip_close(archive.get()) != 0) refuse_zip(file, zip_strerror(archive.get()));
+  archive.release();
 }
 
 }  // namespace edged

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "edged/io/archive/byte_source.hpp"
 #include "edged/io/archive/bytes.hpp"
 
 struct zip;
@@ -33,13 +32,14 @@ class ZipArchive {
  private:
   std::filesystem::path file_;
   std::shared_ptr<zip> zip_;
-  std::map<std::string, std::uint64_t> entries_;  ///< of files: path to index
+  std::map<std::string, std::uint64_t> entries_;  ///< path of each file to its index
 };
-
-/// The text of libzip for the number of an error.
-std::string zip_reason(int error);
 
 /// head: the first bytes of a file.
 bool is_zip(ByteSpan head);
+
+/// Writes all files of the folder and its subfolders, under its name, except `file` itself. Replaces `file` atomically,
+/// after all is written. Throws InputError if a file cannot be read or the archive cannot be written.
+void zip_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 }  // namespace edged

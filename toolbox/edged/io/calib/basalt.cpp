@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The json files of basalt, as TUM-VI and TUM-VIE publish them.
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
@@ -46,9 +49,9 @@ CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>
   const std::string name = node.at("camera_type").text();
   const auto type = std::ranges::find(basalt_types(), name, &BasaltType::name);
   if (type == basalt_types().end()) {
-    std::string known;
-    for (const BasaltType& t : basalt_types()) known += (known.empty() ? "" : ", ") + std::string(t.name);
-    node.at("camera_type").fail("camera type " + name + " is not supported; these are: " + known);
+    node.at("camera_type")
+        .fail(fmt::format("camera type {} is not supported; these are: {}", name,
+                          fmt::join(basalt_types() | std::views::transform(&BasaltType::name), ", ")));
   }
   const YamlReader values = node.at("intrinsics");
   Intrinsics in{size[0], size[1], {}, std::string(type->distortion), {}};
@@ -77,10 +80,8 @@ std::optional<ImuNoise> read_basalt_noise(const YamlReader& value) {
     return *std::max_element(axes.begin(), axes.end());
   };
   ImuNoise noise;
-  noise.gyro_noise = largest("gyro_noise_std");
-  noise.accel_noise = largest("accel_noise_std");
-  noise.gyro_walk = largest("gyro_bias_std");
-  noise.accel_walk = largest("accel_bias_std");
+  for (const NoiseKey& key : noise_keys())
+    if (*key.basalt) noise.*key.value = largest(key.basalt);
   return noise;
 }
 
@@ -95,11 +96,9 @@ CalibrationFile read_basalt(const YamlReader& root) {
                            poses.size(), intrinsics.size(), resolutions.size()));
   CalibrationFile out;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::vector<double> size = resolutions[i].numbers();
-    if (size.size() != 2) resolutions[i].fail("must be [width, height]");
     Lens lens;
     lens.name = "cam" + std::to_string(i);
-    lens.model = read_basalt_camera(intrinsics[i], size);
+    lens.model = read_basalt_camera(intrinsics[i], resolutions[i].numbers(2, "[width, height]"));
     lens.T_B_C = read_basalt_pose(poses[i]);
     // Added to the stamps of images: t_imu = t_cam + cam_time_offset_ns, the sign of time_offset.
     if (const auto offset = value.find("cam_time_offset_ns"))

@@ -38,7 +38,8 @@ CalibrationFile read_dv_xml(const YamlReader& root);
 /// Metavision of Prophesee.
 bool is_metavision(const YamlReader& root);
 CalibrationFile read_metavision(const YamlReader& root);
-[[noreturn]] void refuse_metavision_extrinsics(const YamlReader& root);
+/// Always throws InputError.
+CalibrationFile refuse_metavision_extrinsics(const YamlReader& root);
 
 CalibrationFile read_kalibr(const YamlReader& root);
 /// The noise keys that EuRoC and Kalibr share, also in a map `imu0`.
@@ -53,5 +54,21 @@ CalibrationFile read_vector(const YamlReader& root);
 bool is_vector(const YamlReader& root);
 /// The extrinsics file of a folder.
 std::vector<SourcePath> find_vector_files(const SourcePath& folder);
+
+/// The mask from a picture, whose name is relative to the calibration file: 0 where it is darker than middle grey.
+/// Throws InputError if the picture is missing, unreadable, or not of the size of the camera.
+std::vector<std::uint8_t> read_mask(const YamlReader& picture, const CameraModel& camera);
+
+/// The mask from run lengths: alternately numbers of used and ignored pixels, row by row, beginning with used ones.
+std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraModel& camera);
+/// The run lengths for read_mask_runs, in lines of bounded length.
+std::string mask_runs(const CameraModel& camera);
+
+/// The share of all pixels of the camera.
+double ignored_share(const CameraModel& camera);
+
+/// One line with the remedy for each implausible value: lever arms (long, or millimetres instead of metres), fields of
+/// view, principal points, image sizes. Throws InputError for a field of view that no lens has.
+std::vector<std::string> implausibilities(const Calibration& calibration, const SourcePath& path);
 
 }  // namespace edged

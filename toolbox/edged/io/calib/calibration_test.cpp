@@ -3,9 +3,7 @@
 // Calibration formats, the directions of their transforms, and refusals.
 #include "edged/io/calibration.hpp"
 
-#include <gmock/gmock.h>
-
-#include "edged/io/test_support.hpp"
+#include "edged/io/calib/calib_test_support.hpp"
 
 namespace edged {
 namespace {
@@ -60,11 +58,6 @@ gyroscope_random_walk: 4.0e-06
 rostopic: /imu
 update_rate: 1000.0
 )";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  EXPECT_NE(text.find(from), std::string::npos) << from;
-  return text.replace(text.find(from), from.size(), to);
-}
 
 TEST(Calibration, OwnYamlIsReadAndSharesALens) {
   TempFolder folder;

@@ -10,11 +10,9 @@ constexpr double kMicrosecond_s = 1e-6;
 
 Lens read_dv_camera(const YamlReader& node, const std::string& key) {
   Lens lens;
-  const std::vector<double> size = node.at("resolution").numbers(), focal = node.at("focalLength").numbers(),
-                            centre = node.at("principalPoint").numbers();
-  if (size.size() != 2) node.at("resolution").fail("must be [width, height]");
-  if (focal.size() != 2) node.at("focalLength").fail("must be [fx, fy]");
-  if (centre.size() != 2) node.at("principalPoint").fail("must be [cx, cy]");
+  const std::vector<double> size = node.at("resolution").numbers(2, "[width, height]"),
+                            focal = node.at("focalLength").numbers(2, "[fx, fy]"),
+                            centre = node.at("principalPoint").numbers(2, "[cx, cy]");
   const std::string distortion = node.text_or("distortionModel", "none");
   // An empty list is written as "".
   const bool none = distortion == "none" || distortion.empty();

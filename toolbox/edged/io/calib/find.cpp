@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Finds the calibration file of a folder, and the format of a file.
+#include <algorithm>
 #include <functional>
 #include <sstream>
 
@@ -47,17 +48,45 @@ bool starts_with_a_number(const SourcePath& file) try {
   throw InputError::format("{}: {}", file.string(), damage.what());
 }
 
-bool is_vins(const YamlReader& root) {
-  for (const char* key : {"projection_parameters", "cam0_calib", "cam_left_calib", "event_left_calib"})
-    if (root.find(key)) return true;
-  return false;
-}
-
 bool is_uslam(const YamlReader& root) {
   const auto cameras = root.find("cameras");
   if (!cameras || root.find("edged_rig")) return false;
   const std::vector<YamlReader> items = cameras->items();
   return !items.empty() && items.front().find("camera");
+}
+
+/// A format of calibrations.
+struct CalibrationFormat {
+  std::string_view name = {};          ///< with its keys, for the refusal; "" where it is part of another's
+  std::vector<const char*> keys = {};  ///< one of them is there
+  bool (*recognizes)(const YamlReader& root) = nullptr;  ///< instead of keys
+  CalibrationFile (*read)(const YamlReader& root) = nullptr;
+
+  bool fits(const YamlReader& root) const {
+    if (recognizes) return recognizes(root);
+    return std::ranges::any_of(keys, [&root](const char* key) { return root.find(key).has_value(); });
+  }
+};
+
+/// The formats in the order of the checks.
+const std::vector<CalibrationFormat>& calibration_formats() {
+  static const std::vector<CalibrationFormat> formats = {
+      {.name = "edged_rig (ours)", .keys = {"edged_rig"}, .read = read_own_yaml},
+      {.name = "value0 (basalt)", .keys = {"value0"}, .read = read_basalt},
+      {.name = "sensor_type (EuRoC)", .keys = {"sensor_type"}, .read = read_euroc},
+      {.recognizes = is_vector, .read = read_vector},
+      {.name = "cam0 (Kalibr, VECtor)", .keys = {"cam0"}, .read = read_kalibr},
+      {.name = "cameras (USLAM, DV)", .recognizes = is_dv_json, .read = read_dv_json},
+      {.recognizes = is_uslam, .read = read_uslam},
+      {.name = "camera_matrix (ROS, OpenCV, DV's xml)", .keys = {"camera_matrix"}, .read = read_camera_info},
+      {.name = "projection_parameters or cam0_calib (VINS)",
+       .keys = {"projection_parameters", "cam0_calib", "cam_left_calib", "event_left_calib"},
+       .read = read_vins},
+      {.name = "K (Metavision)", .recognizes = is_metavision, .read = read_metavision},
+      {.keys = {"T_slave_master"}, .read = refuse_metavision_extrinsics},
+      {.recognizes = is_dv_xml, .read = read_dv_xml},
+  };
+  return formats;
 }
 
 }  // namespace
@@ -84,26 +113,16 @@ SourcePath find_calibration(const SourcePath& folder) {
 CalibrationFile read_calibration_file(const SourcePath& file) {
   if (starts_with_a_number(file)) return read_ecd_calib(file);
   const YamlReader root(file);
-  const auto read = [&root]() -> CalibrationFile {
-    if (root.find("edged_rig")) return read_own_yaml(root);
-    if (root.find("value0")) return read_basalt(root);
-    if (root.find("sensor_type")) return read_euroc(root);
-    if (is_vector(root)) return read_vector(root);
-    if (root.find("cam0")) return read_kalibr(root);
-    if (is_dv_json(root)) return read_dv_json(root);
-    if (is_uslam(root)) return read_uslam(root);
-    if (root.find("camera_matrix")) return read_camera_info(root);
-    if (is_vins(root)) return read_vins(root);
-    if (is_metavision(root)) return read_metavision(root);
-    if (root.find("T_slave_master")) refuse_metavision_extrinsics(root);
-    if (is_dv_xml(root)) return read_dv_xml(root);
-    throw InputError::format(
-        "{}: no known calibration; looked for the keys edged_rig (ours), cam0 (Kalibr, VECtor), sensor_type (EuRoC), "
-        "cameras (USLAM, DV), value0 (basalt), camera_matrix (ROS, OpenCV, DV's xml), K (Metavision), "
-        "projection_parameters or cam0_calib (VINS), or for 4 or 9 numbers (calib.txt)",
-        root.file().string());
-  };
-  CalibrationFile out = read();
+  const auto& formats = calibration_formats();
+  const auto format = std::ranges::find_if(formats, [&root](const CalibrationFormat& f) { return f.fits(root); });
+  if (format == formats.end()) {
+    std::string keys;
+    for (const CalibrationFormat& known : formats)
+      if (!known.name.empty()) keys += std::string(known.name) + ", ";
+    throw InputError::format("{}: no known calibration; looked for the keys {}or for 4 or 9 numbers (calib.txt)",
+                             file.string(), keys);
+  }
+  CalibrationFile out = format->read(root);
   out.warnings = root.warnings();
   return out;
 }

@@ -1,8 +1,16 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Kalibr: camchains and the noise of the IMUs. EuRoC and OpenVINS use the same keys.
+#include <spdlog/fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+
+#include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
+#include "edged/io/calibration.hpp"
+#include "edged/io/core/camera_names.hpp"
 
 namespace edged {
 namespace {
@@ -42,6 +50,51 @@ Lens read_kalibr_camera(const YamlReader& node, const std::string& name) {
   return lens;
 }
 
+/// What Kalibr calls a lens: the coefficients of the projection stand before the focal lengths.
+struct KalibrLens {
+  std::string camera_model, distortion_model;
+  std::vector<double> intrinsics, distortion;
+};
+
+KalibrLens kalibr_lens(const RigCamera& camera) {
+  const CameraModel& m = camera.model;
+  const LensModel& lens = lens_model(m.distortion());
+  const auto& k = m.coefficients();
+  KalibrLens out{"pinhole", "none", {}, {}};
+  if (lens.projection_parameters > 0) {
+    out.camera_model = lens.name;
+    out.intrinsics.assign(k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.projection_parameters));
+    const auto rest =
+        std::span(k).subspan(lens.projection_parameters, lens.max_coefficients - lens.projection_parameters);
+    if (std::ranges::any_of(rest, [](double c) { return c != 0.0; })) {
+      out.distortion_model = "radtan";
+      out.distortion.assign(rest.begin(), rest.end());
+    }
+  } else if (m.distortion() == DistortionModel::RadTan && k[4] == 0.0) {
+    out.distortion_model = "radtan", out.distortion = {k[0], k[1], k[2], k[3]};
+  } else if (m.distortion() == DistortionModel::Equidistant) {
+    out.distortion_model = "equidistant", out.distortion = {k[0], k[1], k[2], k[3]};
+  } else if (m.distortion() == DistortionModel::OmniEquidistant) {
+    out.camera_model = "omni", out.intrinsics = {k[0]};
+    out.distortion_model = "equidistant", out.distortion = {k[1], k[2], k[3], k[4]};
+  } else if (m.distortion() == DistortionModel::FieldOfView) {
+    out.distortion_model = "fov", out.distortion = {k[0]};
+  } else if (m.distortion() != DistortionModel::None) {
+    throw InputError::format("camera {}: Kalibr has no lens '{}'{}; choose another --lens, or --format edged",
+                             camera.name, lens.name, m.distortion() == DistortionModel::RadTan ? " with a k3" : "");
+  }
+  out.intrinsics.insert(out.intrinsics.end(), {m.fx(), m.fy(), m.cx(), m.cy()});
+  return out;
+}
+
+std::string rows(const SE3& T) {
+  std::string out;
+  const Eigen::Matrix4d M = T.matrix();
+  for (int row = 0; row < 4; ++row)
+    out += fmt::format("  - [{}, {}, {}, {}]\n", M(row, 0), M(row, 1), M(row, 2), M(row, 3));
+  return out;
+}
+
 }  // namespace
 
 CalibrationFile read_kalibr(const YamlReader& root) {
@@ -66,10 +119,8 @@ CalibrationFile read_kalibr(const YamlReader& root) {
 ImuNoise read_kalibr_noise(const YamlReader& root) {
   const YamlReader imu = root.find("imu0").value_or(root);
   ImuNoise noise;
-  noise.gyro_noise = imu.at("gyroscope_noise_density").positive();
-  noise.gyro_walk = imu.at("gyroscope_random_walk").positive();
-  noise.accel_noise = imu.at("accelerometer_noise_density").positive();
-  noise.accel_walk = imu.at("accelerometer_random_walk").positive();
+  for (const NoiseKey& key : noise_keys())
+    if (*key.kalibr) noise.*key.value = imu.at(key.kalibr).positive();
   return noise;
 }
 
@@ -80,6 +131,25 @@ void refer_to_imu(const YamlReader& root, CalibrationFile& calibration) {
     if (T_i_b) lens.T_B_C = T_i_b->transform() * lens.T_B_C;  // p_i = T_i_b * p_b, b: the IMU of the camchain
     if (offset) lens.time_offset -= offset->time_offset();    // t_b = t_i + time_offset
   }
+}
+
+std::string to_kalibr_yaml(const Calibration& calibration, bool has_poses) {
+  std::string out;
+  for (std::size_t i = 0; i < calibration.rig.cameras.size(); ++i) {
+    const RigCamera& camera = calibration.rig.cameras[i];
+    const KalibrLens lens = kalibr_lens(camera);
+    out += fmt::format("cam{}:\n", i);
+    if (calibration.has_extrinsics) out += "  T_cam_imu:\n" + rows(camera.T_B_C.inverse());
+    if (has_poses && i > 0)
+      out += "  T_cn_cnm1:\n" + rows(camera.T_B_C.inverse() * calibration.rig.cameras[i - 1].T_B_C);
+    out += fmt::format(
+        "  camera_model: {}\n  distortion_coeffs: [{}]\n  distortion_model: {}\n  intrinsics: [{}]\n  resolution: [{}, "
+        "{}]\n  rostopic: /{}\n  name: {}\n  modality: {}\n",
+        lens.camera_model, fmt::join(lens.distortion, ", "), lens.distortion_model, fmt::join(lens.intrinsics, ", "),
+        camera.model.width(), camera.model.height(), camera.name, camera.name, kind_name(camera.modality));
+    if (calibration.has_extrinsics) out += fmt::format("  timeshift_cam_imu: {}\n", to_seconds(camera.time_offset));
+  }
+  return out;
 }
 
 }  // namespace edged

@@ -1,11 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Camchains of Kalibr: chains of cameras, a second IMU, models, modality of cameras.
-#include <gmock/gmock.h>
-#include <spdlog/spdlog.h>
-
-#include "edged/io/calibration.hpp"
-#include "edged/io/test_support.hpp"
+#include "edged/io/calib/calib_test_support.hpp"
 
 namespace edged {
 namespace {
@@ -13,30 +9,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::string edited(std::string text, const std::string& from, const std::string& to) {
-  EXPECT_NE(text.find(from), std::string::npos) << from;
-  return text.replace(text.find(from), from.size(), to);
-}
-
-std::vector<std::string> camera_names(const Calibration& c) {
-  std::vector<std::string> out;
-  for (const RigCamera& camera : c.rig.cameras)
-    out.push_back(camera.name + (camera.modality == Modality::Events ? ":events" : ":frames"));
-  return out;
-}
-
-class Kalibr : public ::testing::Test {
- protected:
-  void SetUp() override { spdlog::set_level(spdlog::level::off); }
-  void TearDown() override { spdlog::set_level(spdlog::level::info); }
-  Calibration load(const std::string& text, const CalibrationOptions& options = {}) {
-    return load_calibration(folder_.write("c.yaml", text), options);
-  }
-  std::string complaint(const std::string& text, const CalibrationOptions& options = {}) {
-    return input_error([&] { load(text, options); });
-  }
-  TempFolder folder_;
-};
+class Kalibr : public CalibrationFiles {};
 
 constexpr const char* kChain = R"(cam0:
   T_cam_imu: [[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, -0.1], [0, 0, 0, 1]]
@@ -57,7 +30,7 @@ cam1:
 
 TEST_F(Kalibr, AKalibrChainLeadsFromCameraToCamera) {
   const Calibration c = load(kChain);
-  EXPECT_THAT(camera_names(c),
+  EXPECT_THAT(names_and_kinds(c),
               ElementsAre("events:events", "frames:frames", "cam1_events:events", "cam1_frames:frames"));
   EXPECT_TRUE((c.rig.cameras[0].T_B_C * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1.1, 0, 0)));
   // 20 cm to the right in the image (camera x) is 20 cm to the right of the body (-y).
@@ -65,7 +38,7 @@ TEST_F(Kalibr, AKalibrChainLeadsFromCameraToCamera) {
   const std::string both =
       std::string(kChain) + "  T_cam_imu: [[0, -1, 0, -0.2], [0, 0, -1, 0], [1, 0, 0, -0.1], [0, 0, 0, 1]]\n";
   EXPECT_TRUE(load(both).warnings.empty());
-  EXPECT_THAT(load(edited(both, "-0.2], [0, 1", "-0.3], [0, 1")).warnings, ElementsAre(HasSubstr("by 0.1 m")));
+  EXPECT_THAT(load(replaced(both, "-0.2], [0, 1", "-0.3], [0, 1")).warnings, ElementsAre(HasSubstr("by 0.1 m")));
 }
 
 TEST_F(Kalibr, ASecondImuOfKalibrTakesItsPlaceAndClockIntoAccount) {
@@ -84,10 +57,10 @@ TEST_F(Kalibr, ASecondImuOfKalibrTakesItsPlaceAndClockIntoAccount) {
 
 /// The chain with the second camera of this model; distortion: its lines, without the indentation of the first.
 std::string with_model(const std::string& model, const std::string& intrinsics, const std::string& distortion) {
-  const std::string text =
-      edited(kChain, "camera_model: pinhole\n  distortion_model: none", "camera_model: " + model + "\n  " + distortion);
-  return edited(text, "[226.0, 226.0, 173.0, 133.0]\n  resolution: [346, 260]\n  rostopic: /davis/right",
-                "[" + intrinsics + "]\n  resolution: [346, 260]\n  rostopic: /davis/right");
+  const std::string text = replaced(kChain, "camera_model: pinhole\n  distortion_model: none",
+                                    "camera_model: " + model + "\n  " + distortion);
+  return replaced(text, "[226.0, 226.0, 173.0, 133.0]\n  resolution: [346, 260]\n  rostopic: /davis/right",
+                  "[" + intrinsics + "]\n  resolution: [346, 260]\n  rostopic: /davis/right");
 }
 
 TEST_F(Kalibr, CameraModelsHaveTheirCoefficientsBeforeTheFocalLengths) {
@@ -116,21 +89,22 @@ TEST_F(Kalibr, CameraModelsHaveTheirCoefficientsBeforeTheFocalLengths) {
 
 TEST_F(Kalibr, ModelsWithoutSupportAreRefusedByName) {
   for (const char* model : {"omni", "ds", "eucm"})
-    EXPECT_THAT(complaint(edited(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
+    EXPECT_THAT(complaint(replaced(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
                 HasSubstr(std::string("numbers for camera model ") + model));
   for (const char* model : {"cahvor", "radtan"})
-    EXPECT_THAT(complaint(edited(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
+    EXPECT_THAT(complaint(replaced(kChain, "camera_model: pinhole", std::string("camera_model: ") + model)),
                 HasSubstr(std::string("camera model ") + model + " is not supported; these are: omni, ds, eucm, and "));
-  EXPECT_THAT(complaint(edited(kChain, "distortion_model: equidistant", "distortion_model: fov9")), HasSubstr("fov9"));
-  EXPECT_THAT(complaint(edited(kChain, "distortion_model: equidistant", "distortion_model: fov")), HasSubstr("fov"));
+  EXPECT_THAT(complaint(replaced(kChain, "distortion_model: equidistant", "distortion_model: fov9")),
+              HasSubstr("fov9"));
+  EXPECT_THAT(complaint(replaced(kChain, "distortion_model: equidistant", "distortion_model: fov")), HasSubstr("fov"));
 }
 
 TEST_F(Kalibr, WhatACameraSeesIsAskedForWhereNothingTells) {
   const std::string mute =
-      edited(edited(kChain, "  rostopic: /davis/left/image_raw\n", ""), "  rostopic: /davis/right/image_raw\n", "");
+      replaced(replaced(kChain, "  rostopic: /davis/left/image_raw\n", ""), "  rostopic: /davis/right/image_raw\n", "");
   EXPECT_THAT(complaint(mute), HasSubstr("camera cam0: its names do not show"));
   EXPECT_THAT(complaint(mute, {.sees = {{"cam7", Sees::Events}}}), HasSubstr("has no camera cam7; it has: cam0, cam1"));
-  EXPECT_THAT(camera_names(load(mute, {.sees = {{"cam0", Sees::Events}, {"cam1", Sees::Both}}})),
+  EXPECT_THAT(names_and_kinds(load(mute, {.sees = {{"cam0", Sees::Events}, {"cam1", Sees::Both}}})),
               ElementsAre("cam0:events", "events:events", "frames:frames"));
 }
 

@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/io/calib/lens.hpp"
 
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/parse/distortion.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
@@ -15,14 +19,17 @@ namespace {
 
 constexpr double kMaxPixels = 65535;
 
+constexpr NoiseKey kNoiseKeys[] = {
+    {&ImuNoise::gyro_noise, "gyro_noise", "gyroscope_noise_density", "gyro_noise_std", "rad/s/sqrt(Hz)"},
+    {&ImuNoise::accel_noise, "accel_noise", "accelerometer_noise_density", "accel_noise_std", "m/s^2/sqrt(Hz)"},
+    {&ImuNoise::gyro_walk, "gyro_walk", "gyroscope_random_walk", "gyro_bias_std", "rad/s^2/sqrt(Hz)"},
+    {&ImuNoise::accel_walk, "accel_walk", "accelerometer_random_walk", "accel_bias_std", "m/s^3/sqrt(Hz)"},
+    {&ImuNoise::gyro_saturation, "gyro_saturation", "", "", "rad/s"},
+    {&ImuNoise::accel_saturation, "accel_saturation", "", "", "m/s^2"},
+    {&ImuNoise::saturation_inflation, "saturation_inflation", "", "", ""}};
+
 bool has_any(const std::string& text, std::initializer_list<std::string_view> words) {
   return std::any_of(words.begin(), words.end(), [&text](auto w) { return text.find(w) != std::string::npos; });
-}
-
-std::string lens_list(const CalibrationFile& file) {
-  std::string list;
-  for (const Lens& lens : file.lenses) list += (list.empty() ? "" : ", ") + lens.name;
-  return list;
 }
 
 Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePath& path) {
@@ -41,31 +48,23 @@ Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePat
 void add_cameras(Calibration& out, const Lens& lens, Sees sees) {
   Rig& rig = out.rig;
   RigCamera camera{lens.name, Modality::Events, lens.model, lens.T_B_C, lens.time_offset};
-  const auto add = [&] {
+  const bool taken =
+      std::ranges::any_of(rig.cameras, [](const RigCamera& c) { return c.name == "events" || c.name == "frames"; });
+  for (const Sees one : {Sees::Events, Sees::Frames}) {
+    if (sees != Sees::Both && sees != one) continue;
+    camera.modality = one == Sees::Events ? Modality::Events : Modality::Frames;
+    if (sees == Sees::Both) camera.name = (taken ? lens.name + "_" : "") + kind_name(camera.modality);
     rig.cameras.push_back(camera);
     if (!lens.topic.empty()) out.topics[camera.name] = lens.topic;
-  };
-  if (sees != Sees::Both) {
-    camera.modality = sees == Sees::Events ? Modality::Events : Modality::Frames;
-    add();
-    return;
   }
-  const bool taken = std::any_of(rig.cameras.begin(), rig.cameras.end(),
-                                 [](const RigCamera& c) { return c.name == "events" || c.name == "frames"; });
-  const std::string begin = taken ? lens.name + "_" : "";
-  camera.name = begin + "events";
-  add();
-  camera.name = begin + "frames";
-  camera.modality = Modality::Frames;
-  add();
 }
 
 /// "omni, ds, ...": the camera models of Kalibr beside pinhole.
 std::string camera_model_names() {
-  std::string names;
-  for (const LensModel& lens : lens_models())
-    if (lens.projection_parameters > 0) names += (names.empty() ? "" : ", ") + std::string(lens.name);
-  return names;
+  const auto is_projection = [](const LensModel& lens) { return lens.projection_parameters > 0; };
+  return fmt::format(
+      "{}",
+      fmt::join(lens_models() | std::views::filter(is_projection) | std::views::transform(&LensModel::name), ", "));
 }
 
 Distortion distortion_of(const YamlReader& place, const Intrinsics& in) {
@@ -111,6 +110,8 @@ void take_camera_model(const YamlReader& camera, const std::string& model, Intri
 
 }  // namespace
 
+std::span<const NoiseKey> noise_keys() { return kNoiseKeys; }
+
 CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
   if (in.width != std::floor(in.width) || in.height != std::floor(in.height) || !(in.width <= kMaxPixels) ||
       !(in.height <= kMaxPixels) || !(in.width >= 1) || !(in.height >= 1))
@@ -129,8 +130,7 @@ CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
 CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,
                        const std::string& coefficients_key) {
   const YamlReader resolution = camera.at("resolution"), intrinsics = camera.at("intrinsics");
-  const std::vector<double> size = resolution.numbers();
-  if (size.size() != 2) resolution.fail("must be [width, height]");
+  const std::vector<double> size = resolution.numbers(2, "[width, height]");
   Intrinsics in{size[0], size[1], intrinsics.numbers(), camera.text_or(distortion_key, "none"), {}};
   const auto coefficients = in.distortion == "none" ? camera.find(coefficients_key) : camera.at(coefficients_key);
   if (coefficients) in.coefficients = coefficients->numbers();
@@ -159,8 +159,9 @@ std::optional<Sees> guess_sees(std::string_view words, int width, int height) {
 
 Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions& options, const SourcePath& path) {
   for (const auto& choice : options.sees)
-    if (std::none_of(file.lenses.begin(), file.lenses.end(), [&](const Lens& l) { return l.name == choice.first; }))
-      throw InputError::format("{}: has no camera {}; it has: {}", path.string(), choice.first, lens_list(file));
+    if (std::ranges::find(file.lenses, choice.first, &Lens::name) == file.lenses.end())
+      throw InputError::format("{}: has no camera {}; it has: {}", path.string(), choice.first,
+                               fmt::join(names_of(file.lenses), ", "));
   Calibration out;
   out.rig.name = file.name.empty() ? std::filesystem::path(path.name()).stem().string() : file.name;
   out.has_extrinsics = file.has_extrinsics;

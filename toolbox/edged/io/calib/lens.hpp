@@ -3,14 +3,14 @@
 // Lenses from calibration files, and the cameras of a rig made from them. Internal to io.
 #pragma once
 
-#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "edged/io/calib/yaml_reader.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 
 namespace edged {
 
@@ -27,19 +27,27 @@ struct Lens {
 
 /// The content of a calibration file and of the files that it names.
 struct CalibrationFile {
-  std::string name;  ///< of the rig; "" if the file has none
+  std::string name;  ///< name of the rig; "" if the file has none
   std::vector<Lens> lenses;
   bool has_extrinsics = true;
   std::optional<ImuNoise> imu;
   std::vector<std::string> warnings;
 };
 
+/// A value of ImuNoise and its keys in the formats, "" where a format has none.
+struct NoiseKey {
+  double ImuNoise::*value;
+  const char *own, *kalibr, *basalt;
+  const char* unit;  ///< "" without one
+};
+std::span<const NoiseKey> noise_keys();
+
 /// Intrinsics in the terms of the formats.
 struct Intrinsics {
   double width, height;              ///< [px]
   std::vector<double> projection;    ///< fx, fy, cx, cy [px]
   std::string distortion = "none";   ///< in the naming of any format
-  std::vector<double> coefficients;  ///< those beyond the model must be zero
+  std::vector<double> coefficients;  ///< beyond those of the model they must be zero
 };
 
 /// The camera model with its distortion. Errors name the file and line of `place`. Throws InputError for models and

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/calib/mask.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
-#include <charconv>
+#include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
@@ -42,12 +42,11 @@ std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraMod
   FieldReader fields(text);
   std::uint8_t value = 255;
   for (std::string_view field = fields.next(); !field.empty(); field = fields.next()) {
-    std::size_t count = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), count);
-    if (error != std::errc() || end != field.data() + field.size() || count > pixels_of(camera) - used.size())
+    const auto count = parse_whole<std::size_t>(field);
+    if (!count || *count > pixels_of(camera) - used.size())
       runs.fail(fmt::format("must be numbers of pixels that make up {} x {}; or give a picture, with mask",
                             camera.width(), camera.height()));
-    used.insert(used.end(), count, std::exchange(value, static_cast<std::uint8_t>(255 - value)));
+    used.insert(used.end(), *count, std::exchange(value, static_cast<std::uint8_t>(255 - value)));
   }
   if (used.size() != pixels_of(camera))
     runs.fail(fmt::format("tells of {} pixels, the camera has {}", used.size(), pixels_of(camera)));

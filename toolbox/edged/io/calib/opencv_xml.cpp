@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/calib/opencv_xml.hpp"
+#include "edged/io/calib/yaml_reader.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <tinyxml2.h>

@@ -1,34 +1,37 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The calibration format of this program: docs/calibration.md.
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
-#include "edged/io/calib/mask.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
 ImuNoise read_own_noise(const YamlReader& imu) {
-  imu.allow_only({"gyro_noise", "accel_noise", "gyro_walk", "accel_walk", "gyro_saturation", "accel_saturation",
-                  "saturation_inflation"});
+  std::vector<std::string_view> keys;
+  for (const NoiseKey& key : noise_keys()) keys.emplace_back(key.own);
+  imu.allow_only(keys);
   ImuNoise noise;
-  const auto take = [&imu](const char* key, double& field) {
-    if (const auto value = imu.find(key)) field = value->positive();
-  };
-  take("gyro_noise", noise.gyro_noise);
-  take("accel_noise", noise.accel_noise);
-  take("gyro_walk", noise.gyro_walk);
-  take("accel_walk", noise.accel_walk);
-  take("gyro_saturation", noise.gyro_saturation);
-  take("accel_saturation", noise.accel_saturation);
-  take("saturation_inflation", noise.saturation_inflation);
+  for (const NoiseKey& key : noise_keys())
+    if (const auto value = imu.find(key.own)) noise.*key.value = value->positive();
   return noise;
+}
+
+std::string noise_yaml(const ImuNoise& noise) {
+  std::string out = "imu:\n";
+  for (const NoiseKey& key : noise_keys())
+    out += fmt::format("  {}: {}{}{}\n", key.own, noise.*key.value, *key.unit ? "  # " : "", key.unit);
+  return out;
 }
 
 Sees read_modality(const YamlReader& value) {
@@ -43,7 +46,7 @@ Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vec
                           "q_B_C", "time_offset", "mask", "mask_runs"})
     if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
   const std::string name = same_as.text();
-  const auto base = std::find_if(above.begin(), above.end(), [&name](const Lens& lens) { return lens.name == name; });
+  const auto base = std::ranges::find(above, name, &Lens::name);
   if (base == above.end()) same_as.fail("must name a camera above; there is no " + name);
   return *base;
 }
@@ -52,29 +55,18 @@ Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vec
 /// bits. A T_B_C that differs from q_B_C takes precedence.
 void take_last_bits(const YamlReader& node, SE3& T_B_C) {
   constexpr double kSame = 1e-12;
-  const std::vector<double> q = node.numbers();
-  if (q.size() != 4) node.fail("must be [qw, qx, qy, qz]; it may be left out");
+  const std::vector<double> q = node.numbers(4, "[qw, qx, qy, qz]; it may be left out");
   const Eigen::Quaterniond exact(q[0], q[1], q[2], q[3]);
   if ((exact.coeffs() - T_B_C.rotation().coeffs()).norm() < kSame ||
       (exact.coeffs() + T_B_C.rotation().coeffs()).norm() < kSame)
     T_B_C.rotation() = exact;
 }
 
-CameraModel narrowed(const CameraModel& model, const YamlReader& angle) {
-  const double degrees = angle.number();
-  try {
-    return model.within(degrees * kDegree);
-  } catch (const InputError& e) {
-    angle.fail(e.what());
-  }
-}
-
-CameraModel masked(const CameraModel& model, const std::vector<std::uint8_t>& used, const YamlReader& place) {
-  try {
-    return model.masked(used);
-  } catch (const InputError& e) {
-    place.fail(e.what());
-  }
+/// The changed model; what is wrong with it is wrong with that value.
+CameraModel changed(const YamlReader& value, const std::function<CameraModel()>& change) try {
+  return change();
+} catch (const InputError& e) {
+  value.fail(e.what());
 }
 
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
@@ -90,13 +82,15 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   if (same_as) return lens;
 
   lens.model = read_model(node, "distortion", "coefficients");
-  if (const auto angle = node.find("max_angle")) lens.model = narrowed(lens.model, *angle);
-  if (const auto picture = node.find("mask"))
-    lens.model = masked(lens.model, read_mask(*picture, lens.model), *picture);
-  if (const auto runs = node.find("mask_runs")) {
-    if (node.find("mask")) runs->fail("cannot stand beside mask");
-    lens.model = masked(lens.model, read_mask_runs(*runs, lens.model), *runs);
+  const CameraModel& model = lens.model;
+  const auto mask = node.find("mask"), runs = node.find("mask_runs");
+  if (mask && runs) runs->fail("cannot stand beside mask");
+  if (const auto angle = node.find("max_angle")) {
+    const double limit = angle->number() * kDegree;
+    lens.model = changed(*angle, [&] { return model.within(limit); });
   }
+  if (mask) lens.model = changed(*mask, [&, used = read_mask(*mask, model)] { return model.masked(used); });
+  if (runs) lens.model = changed(*runs, [&, used = read_mask_runs(*runs, model)] { return model.masked(used); });
   const auto T_B_C = node.find("T_B_C"), T_C_B = node.find("T_C_B");
   if (T_B_C.has_value() == T_C_B.has_value())
     node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
@@ -147,10 +141,9 @@ double plain_degrees(double angle_rad) { return std::round(1e9 * kDegreesPerRadi
 
 std::string camera_yaml(const RigCamera& camera, const std::string& topic, bool has_extrinsics) {
   const CameraModel& m = camera.model;
-  std::string out =
-      fmt::format("  - name: {}\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
-                  quoted(camera.name), camera.modality == Modality::Events ? "events" : "frames", m.width(), m.height(),
-                  m.fx(), m.fy(), m.cx(), m.cy());
+  std::string out = fmt::format(
+      "  - name: {}\n    modality: {}\n    resolution: [{}, {}]\n    intrinsics: [{}, {}, {}, {}]\n",
+      quoted(camera.name), kind_name(camera.modality), m.width(), m.height(), m.fx(), m.fy(), m.cx(), m.cy());
   if (!topic.empty()) out += "    topic: " + quoted(topic) + "\n";
   const auto& k = m.coefficients();
   if (const LensModel& lens = lens_model(m.distortion()); lens.max_coefficients > 0)
@@ -175,8 +168,8 @@ CalibrationFile read_own_yaml(const YamlReader& root) {
   if (const auto imu = root.find("imu")) out.imu = read_own_noise(*imu);
   for (const YamlReader& node : root.at("cameras").items()) {
     Lens lens = read_own_camera(node, out.lenses);
-    for (const Lens& other : out.lenses)
-      if (other.name == lens.name) node.at("name").fail("the name " + lens.name + " is taken by a camera above");
+    if (std::ranges::find(out.lenses, lens.name, &Lens::name) != out.lenses.end())
+      node.at("name").fail("the name " + lens.name + " is taken by a camera above");
     out.lenses.push_back(std::move(lens));
   }
   if (out.lenses.empty()) root.at("cameras").fail("must list a camera");
@@ -184,15 +177,8 @@ CalibrationFile read_own_yaml(const YamlReader& root) {
 }
 
 std::string to_yaml(const Calibration& calibration) {
-  const ImuNoise& n = calibration.imu;
   std::string out = fmt::format("edged_rig: 1\nname: {}\n", quoted(calibration.rig.name));
-  if (calibration.has_imu_noise)
-    out += fmt::format(
-        "imu:\n  gyro_noise: {}  # rad/s/sqrt(Hz)\n  accel_noise: {}  # m/s^2/sqrt(Hz)\n  gyro_walk: {}  # "
-        "rad/s^2/sqrt(Hz)\n  accel_walk: {}  # m/s^3/sqrt(Hz)\n  gyro_saturation: {}  # rad/s\n  accel_saturation: {}  "
-        "# m/s^2\n  saturation_inflation: {}\n",
-        n.gyro_noise, n.accel_noise, n.gyro_walk, n.accel_walk, n.gyro_saturation, n.accel_saturation,
-        n.saturation_inflation);
+  if (calibration.has_imu_noise) out += noise_yaml(calibration.imu);
   out += "cameras:\n";
   for (const RigCamera& camera : calibration.rig.cameras) {
     const auto topic = calibration.topics.find(camera.name);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/calib/plausibility.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 #include <cmath>
 #include <utility>
@@ -25,9 +25,9 @@ double off_centre(const CameraModel& m, int width, int height) {
   return std::max(std::abs(m.cx() / width - 0.5), std::abs(m.cy() / height - 0.5));
 }
 
-class Judge {
+class PlausibilityChecks {
  public:
-  explicit Judge(const SourcePath& path) : path_(path.string()) {}
+  explicit PlausibilityChecks(const SourcePath& path) : path_(path.string()) {}
 
   void pose(const RigCamera& camera) {
     const double arm = camera.T_B_C.translation().norm();
@@ -99,17 +99,17 @@ class Judge {
 }  // namespace
 
 std::vector<std::string> implausibilities(const Calibration& calibration, const SourcePath& path) {
-  Judge judge(path);
+  PlausibilityChecks checks(path);
   const auto& cameras = calibration.rig.cameras;
   for (auto camera = cameras.begin(); camera != cameras.end(); ++camera) {
-    for (auto before = cameras.begin(); before != camera; ++before) judge.sizes(*before, *camera);
+    for (auto before = cameras.begin(); before != camera; ++before) checks.sizes(*before, *camera);
     // A lens of events and frames is checked once.
     if (std::any_of(cameras.begin(), camera, [&](const RigCamera& c) { return is_same_lens(c, *camera); })) continue;
-    judge.field(*camera);
-    judge.centre(*camera);
-    if (calibration.has_extrinsics) judge.pose(*camera);
+    checks.field(*camera);
+    checks.centre(*camera);
+    if (calibration.has_extrinsics) checks.pose(*camera);
   }
-  return judge.warnings;
+  return checks.warnings;
 }
 
 }  // namespace edged

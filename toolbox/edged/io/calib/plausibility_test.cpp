@@ -1,11 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Calibrations that are well-formed, but wrong.
-#include <gmock/gmock.h>
-#include <spdlog/spdlog.h>
-
-#include "edged/io/calibration.hpp"
-#include "edged/io/test_support.hpp"
+#include "edged/io/calib/calib_test_support.hpp"
 
 namespace edged {
 namespace {
@@ -26,17 +22,10 @@ struct Own {
   }
 };
 
-class Plausibility : public ::testing::Test {
+class Plausibility : public CalibrationFiles {
  protected:
-  void SetUp() override { spdlog::set_level(spdlog::level::off); }
-  void TearDown() override { spdlog::set_level(spdlog::level::info); }
-  std::vector<std::string> warnings(const Own& own) {
-    return load_calibration(folder_.write("c.yaml", own.text())).warnings;
-  }
-  std::string complaint(const Own& own) {
-    return input_error([&] { load_calibration(folder_.write("c.yaml", own.text())); });
-  }
-  TempFolder folder_;
+  std::vector<std::string> warnings(const Own& own) { return load(own.text()).warnings; }
+  std::string complaint(const Own& own) { return CalibrationFiles::complaint(own.text()); }
 };
 
 TEST_F(Plausibility, AnOrdinaryHeadPassesWithoutAWord) { EXPECT_THAT(warnings({}), IsEmpty()); }
@@ -73,14 +62,13 @@ TEST_F(Plausibility, AFisheyeMaySeeBehindItself) {
   EXPECT_THAT(complaint(fisheye("19.1")), HasSubstr("impossible"));
   EXPECT_THAT(complaint(fisheye("191", "\n    max_angle: 95")),
               HasSubstr("max_angle: the view limit of a lens must be"));
-  const auto file = folder_.write("narrow.yaml", fisheye("191", "\n    max_angle: 50").text());
-  const Calibration narrow = load_calibration(file);
+  const Calibration narrow = load(fisheye("191", "\n    max_angle: 50").text());
   EXPECT_NEAR(*narrow.rig.cameras[0].model.view_limit(), 0.8727, 1e-4);
   EXPECT_THAT(describe(narrow), HasSubstr("used up to 50 deg off its axis"));
   EXPECT_THAT(to_yaml(narrow), HasSubstr("max_angle: 50 "));
-  const Calibration odd = load_calibration(folder_.write("odd.yaml", fisheye("191", "\n    max_angle: 48").text()));
-  EXPECT_EQ(load_calibration(folder_.write("again.yaml", to_yaml(odd))).rig.cameras[0].model, odd.rig.cameras[0].model);
-  EXPECT_THAT(to_yaml(load_calibration(folder_.write("c.yaml", fisheye("191").text()))), Not(HasSubstr("max_angle")));
+  const Calibration odd = load(fisheye("191", "\n    max_angle: 48").text());
+  EXPECT_EQ(load(to_yaml(odd)).rig.cameras[0].model, odd.rig.cameras[0].model);
+  EXPECT_THAT(to_yaml(load(fisheye("191").text())), Not(HasSubstr("max_angle")));
 }
 
 TEST_F(Plausibility, ThePrincipalPointMustFitTheImage) {
@@ -94,7 +82,7 @@ TEST_F(Plausibility, OneLensHasOneSize) {
   std::string second = own.text();
   second = second.substr(second.find("  - name"));
   second.replace(second.find("events"), 6, "other");
-  const Calibration c = load_calibration(folder_.write("c.yaml", Own{}.text() + second));
+  const Calibration c = load(Own{}.text() + second);
   EXPECT_THAT(c.warnings, ElementsAre(HasSubstr("has the lens of camera events but 300 x 260")));
 }
 

@@ -1,11 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Calibration formats of the makers of event cameras: DV of iniVation, Metavision of Prophesee.
-#include <gmock/gmock.h>
-#include <spdlog/spdlog.h>
-
-#include "edged/io/calibration.hpp"
-#include "edged/io/test_support.hpp"
+#include "edged/io/calib/calib_test_support.hpp"
 
 namespace edged {
 namespace {
@@ -13,7 +9,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Those with a pose have a camera 10 cm in front of the IMU (along x of the body), with its axis along x.
+// Calibrations with a pose have a camera 10 cm in front of the IMU (along x of the body), with its axis along x.
 constexpr const char* kDvJson = R"({
     "version": "2.0",
     "cameras": {
@@ -108,26 +104,10 @@ constexpr const char* kMetavision4 = R"({
 }
 )";
 
-std::string with_text(std::string text, const std::string& from, const std::string& to) {
-  EXPECT_NE(text.find(from), std::string::npos) << from;
-  return text.replace(text.find(from), from.size(), to);
-}
-
-class VendorsCalibrations : public ::testing::Test {
- protected:
-  void SetUp() override { spdlog::set_level(spdlog::level::off); }
-  void TearDown() override { spdlog::set_level(spdlog::level::info); }
-  Calibration load(const std::string& text, const std::string& name, const CalibrationOptions& options = {}) {
-    return load_calibration(folder_.write(name, text), options);
-  }
-  std::string refusal(const std::string& text, const std::string& name = "c.json") {
-    return input_error([&] { load(text, name); });
-  }
-  TempFolder folder_;
-};
+class VendorsCalibrations : public CalibrationFiles {};
 
 TEST_F(VendorsCalibrations, ThePoseOfDvsImuIsTurnedRoundAndItsOffsetIsOurs) {
-  const Calibration c = load(kDvJson, "calibration.json");
+  const Calibration c = load(kDvJson, {}, "calibration.json");
   ASSERT_EQ(c.rig.cameras.size(), 3u);
   const RigCamera& left = c.rig.cameras[0];
   EXPECT_EQ(left.name, "DVXplorer_DXA00001");
@@ -135,35 +115,35 @@ TEST_F(VendorsCalibrations, ThePoseOfDvsImuIsTurnedRoundAndItsOffsetIsOurs) {
   EXPECT_EQ(left.model.distortion(), DistortionModel::RadTan);
   EXPECT_DOUBLE_EQ(left.model.coefficients()[4], 0.01);
   EXPECT_DOUBLE_EQ(left.model.cy(), 241.25);
-  EXPECT_TRUE((left.T_B_C * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1.1, 0, 0), 1e-12));
+  expect_forward_at_10_cm(left);
   EXPECT_EQ(left.time_offset, Duration(2'897'000));
   EXPECT_FALSE(c.has_imu_noise);
   EXPECT_THAT(c.warnings, ElementsAre(HasSubstr("imus.S0: noise densities in DV's files")));
 }
 
 TEST_F(VendorsCalibrations, TheSecondCameraOfDvStandsWhereTheFirstSeesIt) {
-  const RigCamera right = load(kDvJson, "calibration.json").rig.cameras[1];
+  const RigCamera right = load(kDvJson, {}, "calibration.json").rig.cameras[1];
   EXPECT_EQ(right.name, "events");  // a DAVIS has events and frames
   // 5 cm to the right in the image of the first camera, which is -y of the body.
   EXPECT_TRUE(right.T_B_C.translation().isApprox(Eigen::Vector3d(0.1, -0.05, 0), 1e-12));
 }
 
 TEST_F(VendorsCalibrations, DvsXmlIsReadAsTheYamlThatOpenCvWouldHaveWritten) {
-  const Calibration c = load(kDvXml, "camera_imu_calibration.xml");
+  const Calibration c = load(kDvXml, {}, "camera_imu_calibration.xml");
   ASSERT_EQ(c.rig.cameras.size(), 2u);
   const RigCamera& events = c.rig.camera("events");
   EXPECT_EQ(events.model.distortion(), DistortionModel::Equidistant) << "not what use_fisheye_model says";
   EXPECT_DOUBLE_EQ(events.model.fy(), 249.0);
-  EXPECT_TRUE((events.T_B_C * Eigen::Vector3d::UnitZ()).isApprox(Eigen::Vector3d(1.1, 0, 0), 1e-12));
+  expect_forward_at_10_cm(events);
   EXPECT_EQ(events.time_offset, Duration(2'500'000));
-  const Calibration first = load(kFirstDvXml, "dvs.xml");
+  const Calibration first = load(kFirstDvXml, {}, "dvs.xml");
   EXPECT_FALSE(first.has_extrinsics);
   EXPECT_EQ(first.rig.cameras[0].model.distortion(), DistortionModel::Equidistant);
 }
 
 TEST_F(VendorsCalibrations, MetavisionsLensIsOfEventsInBothItsFormats) {
   for (const char* text : {kMetavision, kMetavision4}) {
-    const Calibration c = load(text, "intrinsics.json");
+    const Calibration c = load(text, {}, "intrinsics.json");
     EXPECT_FALSE(c.has_extrinsics);
     ASSERT_EQ(c.rig.cameras.size(), 1u);
     EXPECT_EQ(c.rig.cameras[0].modality, Modality::Events);
@@ -174,42 +154,32 @@ TEST_F(VendorsCalibrations, MetavisionsLensIsOfEventsInBothItsFormats) {
 }
 
 TEST_F(VendorsCalibrations, ALensAloneIsWrittenWithItsPoseToFillIn) {
-  const std::string text = to_yaml(load(kMetavision, "intrinsics.json"));
+  const std::string text = to_yaml(load(kMetavision, {}, "intrinsics.json"));
   EXPECT_THAT(text, HasSubstr("intrinsics: [1040.5, 1041, 641.25, 357.75]"));
-  EXPECT_THAT(refusal(text, "head.yaml"),
+  EXPECT_THAT(complaint(text, {}, "head.yaml"),
               HasSubstr("head.yaml:13: 3 lines read FILL_IN: 13, 14, 15; write your numbers there"));
 }
 
 TEST_F(VendorsCalibrations, WhatCannotBeUsedIsRefusedByItsKey) {
-  EXPECT_THAT(refusal(with_text(kMetavision, "pinhole", "ocam")), HasSubstr("type: camera type ocam is not supported"));
-  EXPECT_THAT(refusal(with_text(kMetavision, "1041.0", "-1041.0")), HasSubstr("focal lengths"));
-  EXPECT_THAT(refusal(R"({"T_slave_master": [{"rvec": [0, 0, 0], "tvec": [0.1, 0, 0]}]})"),
+  EXPECT_THAT(complaint(replaced(kMetavision, "pinhole", "ocam")),
+              HasSubstr("type: camera type ocam is not supported"));
+  EXPECT_THAT(complaint(replaced(kMetavision, "1041.0", "-1041.0")), HasSubstr("focal lengths"));
+  EXPECT_THAT(complaint(R"({"T_slave_master": [{"rvec": [0, 0, 0], "tvec": [0.1, 0, 0]}]})"),
               HasSubstr("two cameras to each other"));
-  EXPECT_THAT(refusal(with_text(kDvJson, "\"640\", \"480\"", "\"640\"")),
+  EXPECT_THAT(complaint(replaced(kDvJson, "\"640\", \"480\"", "\"640\"")),
               HasSubstr("cameras.C0.resolution: must be [width"));
-  EXPECT_THAT(refusal(with_text(kDvJson, "\"2897\"", "\"28970000\"")),
+  EXPECT_THAT(complaint(replaced(kDvJson, "\"2897\"", "\"28970000\"")),
               HasSubstr("timeOffsetMicros: a clock off by 28.97 s"));
-  EXPECT_THAT(refusal(with_text(kDvXml, "Equidistant", "FOV"), "c.xml"),
+  EXPECT_THAT(complaint(replaced(kDvXml, "Equidistant", "FOV"), {}, "c.xml"),
               HasSubstr("distortion fov has 1 coefficient, here are 4"));
-  EXPECT_THAT(refusal(with_text(kDvXml, "</rows>", ""), "c.xml"), HasSubstr("c.xml: not readable as xml from line"));
-  EXPECT_THAT(refusal("<svg></svg>", "c.xml"), HasSubstr("no element opencv_storage"));
+  EXPECT_THAT(complaint(replaced(kDvXml, "</rows>", ""), {}, "c.xml"),
+              HasSubstr("c.xml: not readable as xml from line"));
+  EXPECT_THAT(complaint("<svg></svg>", {}, "c.xml"), HasSubstr("no element opencv_storage"));
 }
 
 TEST_F(VendorsCalibrations, DamagedOnesAreReadOrRefusedButNothingElse) {
-  for (const std::string text : {kDvJson, kDvXml, kFirstDvXml, kMetavision, kMetavision4}) {
-    const auto try_it = [&](const std::string& bytes) {
-      try {
-        load(bytes, "damaged.json", {.otherwise = Sees::Events});
-      } catch (const InputError&) {
-      }
-    };
-    for (std::size_t percent = 0; percent < 100; ++percent) try_it(text.substr(0, text.size() * percent / 100));
-    for (std::size_t at = 0; at < text.size(); at += 13) {
-      std::string flipped = text;
-      flipped[at] = static_cast<char>(flipped[at] ^ (1 << (at % 8)));
-      try_it(flipped);
-    }
-  }
+  for (const char* text : {kDvJson, kDvXml, kFirstDvXml, kMetavision, kMetavision4})
+    EXPECT_GT(load_damaged(text, {.otherwise = Sees::Events}), 0u);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct VinsCamera {
   const char* calib;  ///< names the file with the intrinsics
   const char* topic;
   const char* body_T;    ///< "": none
-  const char* suffix;    ///< of extrinsicRotation and extrinsicTranslation; null: none
+  const char* suffix;    ///< ending of extrinsicRotation and extrinsicTranslation; null: none
   const char* inverted;  ///< the flag
   std::optional<Sees> sees;
 };
@@ -37,7 +37,7 @@ std::vector<double> numbers_at(const YamlReader& from, std::initializer_list<con
   return out;
 }
 
-/// Of PINHOLE, in the order of OpenCV.
+/// The distortion of PINHOLE, in the order of OpenCV.
 std::vector<double> read_camodocal_distortion(const YamlReader& distortion) {
   std::vector<double> out = numbers_at(distortion, {"k1", "k2", "p1", "p2"});
   for (const char* key : {"k3", "k4", "k5", "k6"})

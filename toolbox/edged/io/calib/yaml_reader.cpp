@@ -11,7 +11,6 @@
 #include <cmath>
 
 #include "edged/core/check.hpp"
-#include "edged/io/calib/opencv_xml.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
@@ -182,6 +181,12 @@ std::vector<double> YamlReader::numbers() const {
   return out;
 }
 
+std::vector<double> YamlReader::numbers(std::size_t count, std::string_view form) const {
+  std::vector<double> out = numbers();
+  if (out.size() != count) fail(fmt::format("must be {}", form));
+  return out;
+}
+
 SE3 YamlReader::transform() const {
   const std::vector<double> v = numbers();
   if (v.size() != 12 && v.size() != 16) fail(fmt::format("must have 4 rows of 4 numbers, has {} numbers", v.size()));
@@ -207,12 +212,10 @@ SE3 YamlReader::rigid(std::span<const double> rotation, std::span<const double> 
   return SE3(R, t);
 }
 
-void YamlReader::allow_only(std::initializer_list<std::string_view> known) const {
+void YamlReader::allow_only(const std::vector<std::string_view>& known) const {
   for (const auto& [key, value] : entries()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    std::string list;
-    for (const std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-    value.fail("unknown key; known here: " + list);
+    if (std::ranges::find(known, key) != known.end()) continue;
+    value.fail(fmt::format("unknown key; known here: {}", fmt::join(known, ", ")));
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +19,13 @@
 
 namespace edged {
 
+/// True if the text begins as xml.
+bool is_xml(std::string_view text);
+
+/// Elements become keys, elements `_` become items of a list, a sequence of numbers becomes a list. Throws Damage, with
+/// the line, if the text is no xml.
+YAML::Node parse_opencv_xml(std::string_view text);
+
 /// Also reads OpenCV's dialect (`%YAML:1.0`, `!!opencv-matrix`), its xml, and json.
 class YamlReader {
  public:
@@ -32,8 +38,8 @@ class YamlReader {
   bool is_map() const { return node_.IsMap(); }
   std::optional<YamlReader> find(const std::string& key) const;
   YamlReader at(const std::string& key) const;                      ///< throws InputError if it is missing
-  std::vector<YamlReader> items() const;                            ///< of a sequence
-  std::vector<std::pair<std::string, YamlReader>> entries() const;  ///< of a map, in the order of the file
+  std::vector<YamlReader> items() const;                            ///< items of a sequence
+  std::vector<std::pair<std::string, YamlReader>> entries() const;  ///< entries of a map, in the order of the file
 
   double number() const;
   double positive() const;
@@ -41,6 +47,8 @@ class YamlReader {
   std::string text_or(const std::string& key, const std::string& otherwise) const;  ///< text of a child
   /// The numbers of a sequence, also a nested one, or of {rows, cols, data}, whose size is checked. At most 64.
   std::vector<double> numbers() const;
+  /// So many numbers; `form` shows them in the refusal, as in "[width, height]".
+  std::vector<double> numbers(std::size_t count, std::string_view form) const;
   /// A time offset of at most 10 s either way, exact to the nanosecond. unit_s: its unit in seconds.
   Duration time_offset(double unit_s = 1.0) const;
 
@@ -51,12 +59,12 @@ class YamlReader {
   SE3 rigid(std::span<const double> rotation, std::span<const double> translation) const;
 
   /// Throws InputError for a key that is not in the list.
-  void allow_only(std::initializer_list<std::string_view> known) const;
+  void allow_only(const std::vector<std::string_view>& known) const;
 
   const SourcePath& file() const { return file_; }
   [[noreturn]] void fail(const std::string& what) const;
   void warn(const std::string& what) const { warnings_->push_back(place() + what); }
-  const std::vector<std::string>& warnings() const { return *warnings_; }  ///< of all values of the file
+  const std::vector<std::string>& warnings() const { return *warnings_; }  ///< about all values of the file
 
  private:
   using Warnings = std::shared_ptr<std::vector<std::string>>;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "edged/io/archive/source_path.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 
 namespace edged {
 

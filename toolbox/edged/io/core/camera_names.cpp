@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/io/core/camera_names.hpp"
 
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
+#include <ranges>
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
@@ -10,18 +13,12 @@
 namespace edged {
 namespace {
 
-std::string stream_list(const DatasetInfo& info) {
-  std::string list;
-  for (const RecordedCamera& camera : recorded_cameras(info))
-    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name, kind_name(camera.modality));
-  return list;
-}
-
-std::string camera_list(const Rig& rig) {
-  std::string list;
-  for (const RigCamera& camera : rig.cameras)
-    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", camera.name, kind_name(camera.modality));
-  return list.empty() ? "none" : list;
+/// "left (events), right (frames)"
+std::string camera_list(const auto& cameras) {
+  const auto described = [](const auto& camera) {
+    return fmt::format("{} ({})", camera.name, kind_name(camera.modality));
+  };
+  return cameras.empty() ? "none" : fmt::format("{}", fmt::join(cameras | std::views::transform(described), ", "));
 }
 
 [[noreturn]] void refuse(const Rig& rig, const DatasetInfo& info, Modality modality, const std::string& reason) {
@@ -30,8 +27,8 @@ std::string camera_list(const Rig& rig) {
   throw InputError::format(
       "{}: holds {}; rig '{}' has the cameras {}: {}; name the camera of the {} '{}' in the calibration (`edged calib "
       "FILE --camera NAME={}:{} --out rig.yaml` renames it), or run with --mode {}",
-      info.name, stream_list(info), rig.name, camera_list(rig), reason, kind_name(modality), wanted,
-      kind_name(modality), wanted, events ? "frames" : "events");
+      info.name, camera_list(recorded_cameras(info)), rig.name, camera_list(rig.cameras), reason, kind_name(modality),
+      wanted, kind_name(modality), wanted, events ? "frames" : "events");
 }
 
 /// The cameras beside the first must have the names of the rig: readers name them so where they can.
@@ -43,7 +40,7 @@ void check_further_cameras(const Rig& rig, const DatasetInfo& info, Modality mod
       throw InputError::format(
           "{}: holds {}; rig '{}' has the cameras {}: none is called '{}'; name it so in the calibration, or choose "
           "others in the option cameras",
-          info.name, stream_list(info), rig.name, camera_list(rig), recorded.name);
+          info.name, camera_list(recorded_cameras(info)), rig.name, camera_list(rig.cameras), recorded.name);
     if (named->modality != modality)
       refuse(rig, info, modality, fmt::format("'{}' is not of {}", recorded.name, kind_name(modality)));
   }
@@ -89,9 +86,7 @@ std::string usual_camera_name(Modality modality, std::size_t index) {
 }
 
 std::string recorded_camera_names(const DatasetInfo& info) {
-  std::string list;
-  for (const RecordedCamera& camera : recorded_cameras(info)) list += (list.empty() ? "" : ", ") + camera.name;
-  return list;
+  return fmt::format("{}", fmt::join(names_of(recorded_cameras(info)), ", "));
 }
 
 std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name) {

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "edged/io/parse/text_columns.hpp"
+#include "edged/io/parse/text_table.hpp"
 
 namespace edged {
 namespace {
@@ -19,25 +19,13 @@ std::optional<std::size_t> image_role(const ColumnName& column) {
   return names_time(column) ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-/// The columns of stamp and file, and the unit of the stamps.
-struct ImageColumns {
-  std::vector<std::size_t> at = {0, 1};
-  TimeUnit unit = TimeUnit::Seconds;
-};
-
-ImageColumns image_columns(const SourcePath& list, TimeUnit unit) {
-  static const ColumnRoles roles{{"timestamp", "image_name"}, image_role, "timestamp image_name"};
-  ImageColumns columns{.unit = unit};
-  if (auto named = named_columns(list, roles)) {
-    columns.unit = time_unit_of(named->name_of(0)).value_or(unit);
-    columns.at = std::move(named->at);
-  }
-  return columns;
+TextTable image_table(const SourcePath& list, TimeUnit unit) {
+  static const TableKind kind{{"timestamp", "image_name"}, image_role, "timestamp image_name"};
+  return heading_or(list, kind, {.at = {0, 1}, .unit = unit});
 }
 
 /// Stamp and file of a line. A file name in the last column may contain blanks.
-std::optional<std::pair<Timestamp, std::string_view>> read_image_line(std::string_view line,
-                                                                      const ImageColumns& columns) {
+std::optional<std::pair<Timestamp, std::string_view>> read_image_line(std::string_view line, const TextTable& columns) {
   FieldReader fields(line);
   std::optional<Timestamp> t;
   std::string_view file;
@@ -75,7 +63,7 @@ std::optional<SourcePath> find_ecd_image_list(const SourcePath& folder, std::siz
 }
 
 StampedLines<FrameEntry>::Spec image_lines(const SourcePath& list, const SourcePath& folder, TimeUnit unit) {
-  const auto parse = [folder, columns = image_columns(list, unit)](std::string_view line) -> std::optional<FrameEntry> {
+  const auto parse = [folder, columns = image_table(list, unit)](std::string_view line) -> std::optional<FrameEntry> {
     const auto read = read_image_line(line, columns);
     if (!read) return std::nullopt;
     return FrameEntry{read->first, folder / read->second};
@@ -90,7 +78,7 @@ StampedLines<FrameEntry>::Spec ecd_images(const SourcePath& folder, std::size_t 
 std::optional<std::string> first_ecd_image(const SourcePath& folder, std::size_t camera) {
   const auto list = find_ecd_image_list(folder, camera);
   if (!list) return std::nullopt;
-  const ImageColumns columns = image_columns(*list, TimeUnit::Seconds);
+  const TextTable columns = image_table(*list, TimeUnit::Seconds);
   LineReader lines(*list);
   while (const auto line = lines.next())
     if (const auto read = read_image_line(line->text, columns)) return std::string(read->second);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
 
 namespace edged {

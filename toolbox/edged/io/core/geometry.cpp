@@ -5,28 +5,27 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
 #include "edged/core/check.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {
 
 std::optional<int> pixels(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > 16384) return std::nullopt;
-  return value;
-}
-
-const RigCamera* find_camera(const Rig& rig, Modality modality, std::string_view name) {
-  for (const RigCamera& camera : rig.cameras)
-    if (camera.name == name && camera.modality == modality) return &camera;
-  return rig.find(modality);
+  const auto value = parse_whole<int>(text);
+  return value && *value >= 1 && *value <= 16384 ? value : std::nullopt;
 }
 
 }  // namespace
+
+const RigCamera* find_camera(const Rig& rig, Modality modality, std::string_view name) {
+  const auto fits = [&](const RigCamera& camera) { return camera.name == name && camera.modality == modality; };
+  const auto found = std::ranges::find_if(rig.cameras, fits);
+  return found == rig.cameras.end() ? rig.find(modality) : &*found;
+}
 
 std::optional<cv::Size> parse_geometry(std::string_view text) {
   const std::size_t cut = text.find('x');

@@ -17,8 +17,11 @@ namespace edged {
 /// Parses "640x480". Nothing if the text is no size.
 std::optional<cv::Size> parse_geometry(std::string_view text);
 
-/// Warns if the focal length [px] of a camera of the recording differs by more than 2 % from that of the rig.
-/// name: of the camera; if the rig has none of that name, its first of the modality.
+/// The camera of that modality and name; if the rig has none of that name, its first of the modality; null without one.
+const RigCamera* find_camera(const Rig& rig, Modality modality, std::string_view name);
+
+/// Warns if the focal length [px] of a camera of the recording differs by more than 2 % from that of the rig, whose
+/// camera is that of find_camera().
 void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality,
                         std::string_view name = {});
 
@@ -29,8 +32,7 @@ class UnknownSensorSize : public InputError {
 };
 
 /// The size of the event sensor of a file: of the rig, else `said` by the user or the file. Warns if the two differ.
-/// Throws UnknownSensorSize without either.
-/// name: of the camera, as above.
+/// Throws UnknownSensorSize without either. name: of the camera, as in find_camera().
 cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig,
                            std::string_view name = {});
 

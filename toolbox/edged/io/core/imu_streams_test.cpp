@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/io/core/imu_join.hpp"
-#include "edged/io/core/imu_on_other_clock.hpp"
+#include "edged/io/core/imu_interpolator.hpp"
+#include "edged/io/core/replaced_streams.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {
@@ -13,8 +13,8 @@ namespace {
 
 Timestamp in_ms(double t) { return timestamp_from_seconds(1e-3 * t); }
 
-TEST(ImuJoin, InterpolatesTheAccelerometerToTheGyro) {
-  ImuJoin join;
+TEST(ImuInterpolator, InterpolatesTheAccelerometerToTheGyro) {
+  ImuInterpolator join;
   std::vector<ImuSample> samples;
   const auto take = [&](const std::vector<ImuSample>& more) {
     samples.insert(samples.end(), more.begin(), more.end());
@@ -42,11 +42,11 @@ std::unique_ptr<Dataset> twice_as_fast() {
   return dataset;
 }
 
-TEST(ImuOnOtherClock, BringsTheStampsBackAndKeepsAllInOrder) {
-  ImuOnOtherClock dataset(twice_as_fast(), twice_as_fast(), 2.0);
+TEST(ImuClockRate, BringsTheStampsBackAndKeepsAllInOrder) {
+  const auto dataset = with_imu_clock_rate(twice_as_fast(), twice_as_fast(), 2.0);
   Timestamp last = Timestamp::min();
   std::size_t events = 0, samples = 0;
-  while (const auto measurement = dataset.next()) {
+  while (const auto measurement = dataset->next()) {
     EXPECT_GE(*first_stamp(*measurement), last);
     last = *last_stamp(*measurement);
     if (const auto* batch = std::get_if<EventBatch>(&*measurement)) events += batch->events.size();

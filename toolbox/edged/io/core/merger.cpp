@@ -14,7 +14,7 @@
 namespace edged {
 namespace {
 
-constexpr Duration kPatience = std::chrono::seconds(1);       // a stream that is silent for longer is not waited for
+constexpr Duration kMaxSilence = std::chrono::seconds(1);     // a stream that is silent for longer is not waited for
 constexpr Duration kDisorder = std::chrono::milliseconds(1);  // within one stream
 constexpr std::size_t kMostInBatch = 65536;
 
@@ -22,7 +22,7 @@ constexpr std::size_t kMostInBatch = 65536;
 
 template <typename T>
 void ArrivalQueue<T>::push(T item) {
-  gate_.push(
+  jump_filter_.push(
       std::move(item), [this](T passed) { insert(std::move(passed)); },
       [this](const T& dropped, Timestamp next) {
         repairs_.add(subject_ + ": stamp far ahead, dropped",
@@ -34,7 +34,7 @@ void ArrivalQueue<T>::push(T item) {
 template <typename T>
 void ArrivalQueue<T>::push(std::span<const T> items) {
   while (!items.empty()) {
-    const std::size_t count = gate_.push_first(items.first(count_in_order(items)));
+    const std::size_t count = jump_filter_.push_first(items.first(count_in_order(items)));
     if (count > 0) {
       sorted_.insert(sorted_.end(), items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count));
       last_ = time_of(items[count - 1]);
@@ -59,7 +59,7 @@ std::size_t ArrivalQueue<T>::count_in_order(std::span<const T> items) const {
 
 template <typename T>
 void ArrivalQueue<T>::finish() {
-  gate_.finish([this](T passed) { insert(std::move(passed)); });
+  jump_filter_.finish([this](T passed) { insert(std::move(passed)); });
 }
 
 template <typename T>
@@ -126,52 +126,52 @@ void Merger::expect(const Streams& streams) {
   };
   set(events_, streams.events, "events", 4'000'000);
   set(frames_, streams.frames, "frames", 300);
-  imu_pace_.expected = streams.imu;
+  imu_arrival_.expected = streams.imu;
 }
 
 void Merger::leave_out(Modality unwanted) {
-  const auto forget = [](auto& cameras) {
+  const auto discard = [](auto& cameras) {
     for (auto& camera : cameras) {
       camera.queue.clear();
-      camera.pace = {};
+      camera.arrival = {};
     }
   };
   if (unwanted == Modality::Events) {
-    forget(events_);
+    discard(events_);
   } else {
-    forget(frames_);
+    discard(frames_);
   }
   // Its clock may have been ahead of the other clocks.
-  begin_ = newest_ = imu_pace_.last;
-  for (const auto& camera : events_) begin_ = newest_ = std::max(newest_, camera.pace.last);
-  for (const auto& camera : frames_) begin_ = newest_ = std::max(newest_, camera.pace.last);
+  begin_ = newest_ = imu_arrival_.last_stamp;
+  for (const auto& camera : events_) begin_ = newest_ = std::max(newest_, camera.arrival.last_stamp);
+  for (const auto& camera : frames_) begin_ = newest_ = std::max(newest_, camera.arrival.last_stamp);
 }
 
 void Merger::push(std::span<const Event> events, std::size_t camera) {
-  auto& [name, queue, pace] = events_.at(camera);
+  auto& [name, queue, arrival] = events_.at(camera);
   queue.push(events);
-  note(pace, queue.last());
+  note_arrival(arrival, queue.last());
 }
 
 void Merger::push(Frame frame, std::size_t camera) {
-  auto& [name, queue, pace] = frames_.at(camera);
+  auto& [name, queue, arrival] = frames_.at(camera);
   frame.camera = name;
   queue.push(std::move(frame));
-  note(pace, queue.last());
+  note_arrival(arrival, queue.last());
 }
 
 void Merger::push(const ImuSample& sample) {
   imu_.push(sample);
-  note(imu_pace_, imu_.last());
+  note_arrival(imu_arrival_, imu_.last());
 }
 
 void Merger::push(const ExternalSample& sample) { external_[sample.index()].push(sample); }
 
-void Merger::note(Pace& pace, std::optional<Timestamp> last) {
+void Merger::note_arrival(Arrival& arrival, std::optional<Timestamp> last) {
   if (!last) return;
   if (!begin_) begin_ = last;
   newest_ = std::max(newest_.value_or(*last), *last);
-  pace = {pace.expected, last, newest_};
+  arrival = {arrival.expected, last, newest_};
 }
 
 void Merger::finish() {
@@ -183,25 +183,27 @@ void Merger::finish() {
 }
 
 /// No later input is expected to have an earlier stamp.
-Timestamp Merger::horizon() const {
+Timestamp Merger::complete_until() const {
   if (finished_) return Timestamp::max();
   if (!newest_) return Timestamp::min();
-  Timestamp settled = Timestamp::max(), overflow = imu_.overflow();
-  const auto wait_for = [&](const Pace& pace) {
-    if (!pace.expected && !pace.last) return;
-    const bool silent = *newest_ - pace.heard.value_or(*begin_) > kPatience;
-    settled = std::min(settled, silent ? *newest_ - kPatience : pace.last ? *pace.last - kDisorder : Timestamp::min());
+  Timestamp complete = Timestamp::max(), overflow = imu_.overflow();
+  const auto wait_for = [&](const Arrival& arrival) {
+    if (!arrival.expected && !arrival.last_stamp) return;
+    const bool silent = *newest_ - arrival.newest_then.value_or(*begin_) > kMaxSilence;
+    complete = std::min(complete, silent               ? *newest_ - kMaxSilence
+                                  : arrival.last_stamp ? *arrival.last_stamp - kDisorder
+                                                       : Timestamp::min());
   };
   const auto wait_for_all = [&](const auto& cameras) {
     for (const auto& camera : cameras) {
-      wait_for(camera.pace);
+      wait_for(camera.arrival);
       overflow = std::max(overflow, camera.queue.overflow());
     }
   };
   wait_for_all(events_);
   wait_for_all(frames_);
-  wait_for(imu_pace_);
-  return std::max(settled, overflow);
+  wait_for(imu_arrival_);
+  return std::max(complete, overflow);
 }
 
 ArrivalQueue<ExternalSample>& Merger::next_external() {
@@ -212,7 +214,7 @@ std::optional<Measurement> Merger::pop() {
   const auto next_of = [](auto& cameras) -> auto& {  // of equal stamps the first camera
     return *std::ranges::min_element(cameras, {}, [](const auto& camera) { return camera.queue.next_stamp(); });
   };
-  const Timestamp ready = horizon();
+  const Timestamp ready = complete_until();
   Camera<Event>& events = next_of(events_);
   Camera<Frame>& frames = next_of(frames_);
   ArrivalQueue<ExternalSample>& external = next_external();

@@ -11,8 +11,8 @@
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/core/measurements/stream_order.hpp"
-#include "edged/io/parse/ahead_gate.hpp"
 #include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/stamp_jump_filter.hpp"
 #include "edged/measurement.hpp"
 
 namespace edged {
@@ -21,7 +21,7 @@ namespace edged {
 inline constexpr Duration kLongestBatch = std::chrono::milliseconds(5);
 
 /// The items of one stream, T with a `time_of`, sorted by their stamps. They may arrive slightly out of order. An
-/// AheadGate checks for stamps far ahead.
+/// StampJumpFilter checks for stamps far ahead.
 template <typename T>
 class ArrivalQueue {
  public:
@@ -54,7 +54,7 @@ class ArrivalQueue {
  private:
   void insert(T item);
   void drop_popped();
-  Timestamp newest() const { return gate_.newest().value_or(Timestamp::min()); }
+  Timestamp newest() const { return jump_filter_.newest().value_or(Timestamp::min()); }
   std::size_t count_in_order(std::span<const T> items) const;
 
   std::string subject_;
@@ -63,7 +63,7 @@ class ArrivalQueue {
   Repairs& repairs_;
   std::vector<T> sorted_;  ///< from first_ on; those before have been popped
   std::size_t first_ = 0;
-  AheadGate<T> gate_;
+  StampJumpFilter<T> jump_filter_;
   std::optional<Timestamp> last_;
   Timestamp handed_out_ = Timestamp::min();  ///< items before this stamp are too late
 };
@@ -101,24 +101,25 @@ class Merger {
   std::optional<Measurement> pop();
 
  private:
-  /// The last stamp of a stream, and the newest stamp of all streams when it last delivered.
-  struct Pace {
+  /// What has arrived of a stream.
+  struct Arrival {
     bool expected = false;
-    std::optional<Timestamp> last, heard;
+    std::optional<Timestamp> last_stamp;   ///< the last of the stream
+    std::optional<Timestamp> newest_then;  ///< the newest stamp of all streams at that time
   };
   template <typename T>
   struct Camera {
     std::string name;
     ArrivalQueue<T> queue;
-    Pace pace = {};
+    Arrival arrival = {};
   };
-  void note(Pace& pace, std::optional<Timestamp> last);
-  Timestamp horizon() const;
+  void note_arrival(Arrival& arrival, std::optional<Timestamp> last_stamp);
+  Timestamp complete_until() const;
   ArrivalQueue<ExternalSample>& next_external();
   EventBatch take_events(Camera<Event>& camera, Timestamp end);
 
   Repairs& repairs_;
-  Pace imu_pace_;
+  Arrival imu_arrival_;
   std::optional<Timestamp> begin_, newest_;  ///< first and newest stamp of all
   std::vector<Camera<Event>> events_;        ///< at least one
   std::vector<Camera<Frame>> frames_;        ///< at least one

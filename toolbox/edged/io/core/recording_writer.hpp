@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "edged/dataset.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 
 namespace edged {
 
@@ -30,7 +30,7 @@ class RecordingWriter {
 /// The input of a writer before the first measurement.
 struct WriterSetup {
   std::filesystem::path path;              ///< folder or file to create
-  DatasetInfo info;                        ///< of the recording
+  DatasetInfo info;                        ///< what is known of the recording
   std::optional<Calibration> calibration;  ///< from the recording or the user, if any
 
   /// Size of an event sensor [px]. camera: its place. Throws InputError if it is unknown.

@@ -20,7 +20,7 @@ constexpr double kUsualDistance_m = 3.0;   // of what the cameras see
 constexpr double kLeastSharedView = 0.25;  // fewer features have a match than tracking needs
 
 /// Null where the rig does not name it: its only camera of that kind is taken for it then.
-const RigCamera* find_camera(const Rig& rig, const RecordedCamera& recorded) {
+const RigCamera* named_camera(const Rig& rig, const RecordedCamera& recorded) {
   const auto found = std::ranges::find_if(rig.cameras, [&](const RigCamera& camera) {
     return camera.name == recorded.name && camera.modality == recorded.modality;
   });
@@ -37,9 +37,9 @@ std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info)
     const auto first = std::ranges::find(recorded, modality, &RecordedCamera::modality);
     if (first == recorded.end()) continue;
     names.push_back(first->name);
-    const RigCamera* one = find_camera(rig, *first);
+    const RigCamera* one = named_camera(rig, *first);
     const auto second = std::find_if(std::next(first), recorded.end(), [&](const RecordedCamera& camera) {
-      const RigCamera* other = camera.modality == modality ? find_camera(rig, camera) : nullptr;
+      const RigCamera* other = camera.modality == modality ? named_camera(rig, camera) : nullptr;
       return one && other && shared_view(*one, *other, kUsualDistance_m) >= kLeastSharedView;
     });
     if (second == recorded.end()) continue;

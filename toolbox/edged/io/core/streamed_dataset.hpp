@@ -30,7 +30,7 @@ class StreamedDataset : public Dataset {
   /// Reads up to the first measurement, for info().begin. To be called last in the constructor of a reader. cameras:
   /// those that are read, of each kind the first first. Throws InputError without measurements.
   void begin(const std::vector<RecordedCamera>& cameras, bool imu);
-  /// The same for readers of one camera a kind, "events" and "frames".
+  /// For readers of one camera a kind, "events" and "frames".
   struct OneOfEach {
     bool events = false, frames = false, imu = false;
   };
@@ -68,7 +68,7 @@ class StreamedDataset : public Dataset {
   }
 
   Merger merger_;
-  std::vector<cv::Size> image_sizes_;  ///< of each frame camera's first image
+  std::vector<cv::Size> image_sizes_;  ///< the first image of each frame camera
   std::size_t inside_ = 0, outside_ = 0;
   bool finished_ = false;
   std::set<Modality> left_out_;

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <ranges>
 #include <tuple>
 
 #include "edged/core/check.hpp"
@@ -65,9 +66,8 @@ std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role)
 }
 
 std::string listed(const std::vector<Topic>& topics, const std::vector<std::size_t>& which) {
-  std::string list;
-  for (const std::size_t i : which) list += (list.empty() ? "" : ", ") + topics[i].name;
-  return list.empty() ? "none" : list;
+  const auto name = [&topics](std::size_t i) { return topics[i].name; };
+  return which.empty() ? "none" : fmt::format("{}", fmt::join(which | std::views::transform(name), ", "));
 }
 
 std::size_t wanted_topic(const std::vector<Topic>& topics, Role role, const std::string& name,
@@ -97,11 +97,10 @@ void check_names(const TopicWishes& wishes) {
   for (const auto& [name, topic] : wishes.wanted) {
     const bool camera = is_camera(name, Modality::Events, wishes.rig) || is_camera(name, Modality::Frames, wishes.rig);
     if (camera || std::ranges::find(kRoleNames, name) != kRoleNames.end()) continue;
-    std::string cameras;
-    if (wishes.rig)
-      for (const RigCamera& known : wishes.rig->cameras) cameras += (cameras.empty() ? "" : ", ") + known.name;
+    std::vector<std::string> cameras = {"events2", "frames2"};
+    if (wishes.rig && !wishes.rig->cameras.empty()) cameras = names_of(wishes.rig->cameras);
     throw InputError::format("--topic {}={}: the role must be one of {}, or the name of a camera: {}", name, topic,
-                             fmt::join(kRoleNames, ", "), cameras.empty() ? "events2, frames2" : cameras);
+                             fmt::join(kRoleNames, ", "), fmt::join(cameras, ", "));
   }
   for (auto one = wishes.wanted.begin(); one != wishes.wanted.end(); ++one)
     for (auto other = std::next(one); other != wishes.wanted.end(); ++other)
@@ -112,10 +111,9 @@ void check_names(const TopicWishes& wishes) {
 }
 
 [[noreturn]] void refuse_without_sensor(const std::vector<Topic>& topics, const std::string& file) {
-  std::string types;
-  for (const Topic& topic : topics)
-    types += fmt::format("{}{} ({})", types.empty() ? "" : ", ", topic.name, topic.type);
-  throw InputError::format("{}: no events, images or IMU among its topics: {}", file, types);
+  const auto described = [](const Topic& topic) { return fmt::format("{} ({})", topic.name, topic.type); };
+  throw InputError::format("{}: no events, images or IMU among its topics: {}", file,
+                           fmt::join(topics | std::views::transform(described), ", "));
 }
 
 /// dvs_msgs of 2015 has other fields under the same type name.
@@ -152,12 +150,11 @@ class CameraChooser {
     return chosen_;
   }
 
-  /// Those of the chosen cameras that are read.
+  /// The chosen cameras that are read.
   std::vector<CameraTopic> to_read() const {
-    std::vector<std::string> names;
-    for (const CameraTopic& camera : chosen_) names.push_back(camera.name);
     std::vector<CameraTopic> read;
-    for (const std::size_t i : cameras_to_read(names, wishes_.cameras, wishes_.all_cameras)) read.push_back(chosen_[i]);
+    for (const std::size_t i : cameras_to_read(names_of(chosen_), wishes_.cameras, wishes_.all_cameras))
+      read.push_back(chosen_[i]);
     return read;
   }
 
@@ -175,8 +172,8 @@ class CameraChooser {
     std::erase(free_, topic);
   }
 
-  bool is_chosen(const std::string& name) const {
-    return std::ranges::find(chosen_, name, &CameraTopic::name) != chosen_.end() || wishes_.wanted.contains(name);
+  bool has_topic(const std::string& name) const {
+    return std::ranges::find(chosen_, name, &CameraTopic::name) != chosen_.end();
   }
 
   void take_wanted() {
@@ -185,7 +182,7 @@ class CameraChooser {
       if (!whole_kind) std::erase_if(free_, [this, &topic = topic](std::size_t i) { return topics_[i].name == topic; });
       if (topic == "none" || (!whole_kind && !is_camera(name, modality_, wishes_.rig))) continue;
       const std::string camera = whole_kind ? name_by_calibration(topic).value_or(name) : name;
-      if (std::ranges::find(chosen_, camera, &CameraTopic::name) != chosen_.end())
+      if (has_topic(camera))
         throw InputError::format("--topic {}={}: camera {} has a topic already; give each camera once", name, topic,
                                  camera);
       take(camera, wanted_topic(topics_, role(), topic, file_));
@@ -221,7 +218,7 @@ class CameraChooser {
     const auto take_all = [&](const auto& find_topic) {
       for (const std::string& camera : rig_) {
         const auto topic = wishes_.calibrated.find(camera);
-        if (topic == wishes_.calibrated.end() || is_chosen(camera)) continue;
+        if (topic == wishes_.calibrated.end() || has_topic(camera) || wishes_.wanted.contains(camera)) continue;
         const auto found = find_topic(topic->second);
         if (found != free_.end()) take(name_of(camera), *found);
       }
@@ -248,11 +245,8 @@ class CameraChooser {
   }
 
   void take_by_names(std::string& ties) {
-    const auto by_user = [this](const std::string& name) {
-      return std::ranges::find(chosen_, name, &CameraTopic::name) != chosen_.end();
-    };
     Rig rest = wishes_.rig ? *wishes_.rig : Rig{};
-    std::erase_if(rest.cameras, [&](const RigCamera& camera) { return by_user(camera.name); });
+    std::erase_if(rest.cameras, [&](const RigCamera& camera) { return has_topic(camera.name); });
     const auto left = std::ranges::count(rest.cameras, modality_, &RigCamera::modality);
     std::ranges::stable_sort(free_, {}, [this](std::size_t i) { return topics_[i].name; });
     if (free_.size() > 1 && !rig_.empty() && free_.size() > static_cast<std::size_t>(left)) {
@@ -264,7 +258,7 @@ class CameraChooser {
     NamedStreams named = name_streams(&rest, modality_, streams, wishes_.cameras, file_);
     std::vector<std::string> used;
     for (std::string& name : named.names) {  // two cameras of one name are none
-      const auto taken = [&] { return by_user(name) || std::ranges::find(used, name) != used.end(); };
+      const auto taken = [&] { return has_topic(name) || std::ranges::find(used, name) != used.end(); };
       for (std::size_t i = 0; taken(); ++i) name = usual_camera_name(modality_, i);
       used.push_back(name);
     }

@@ -19,7 +19,7 @@ namespace edged {
 struct Topic {
   std::string name;        ///< "/dvs/events"
   std::string type;        ///< "dvs_msgs/EventArray", also for ROS 2
-  std::string definition;  ///< of the type, if the container holds it
+  std::string definition;  ///< text of the type, if the container holds it
   std::size_t count = 0;   ///< number of messages
 };
 
@@ -49,7 +49,7 @@ using WantedTopics = std::map<std::string, std::string>;
 struct TopicWishes {
   WantedTopics wanted = {};
   std::map<std::string, std::string> calibrated = {};  ///< names of cameras, each with its topic by the calibration
-  const Rig* rig = nullptr;                            ///< of the user, if any
+  const Rig* rig = nullptr;                            ///< that the user chose, if any
   std::vector<std::string> cameras = {};               ///< names of the cameras to read; empty: the first of each kind
   bool all_cameras = false;                            ///< reads all instead
 };
@@ -64,9 +64,9 @@ struct CameraTopic {
 
 /// The index of the topic of each role.
 struct TopicChoice {
-  std::array<std::optional<std::size_t>, kRoleNames.size()> topics;  ///< of events and frames the first camera's
+  std::array<std::optional<std::size_t>, kRoleNames.size()> topics;  ///< for events and frames that of the first camera
   std::vector<CameraTopic> cameras;  ///< that are read: event cameras, then frame cameras, of each kind the first first
-  std::vector<RecordedCamera> known;  ///< the same with those that are not read
+  std::vector<RecordedCamera> known;  ///< all cameras, also those that are not read
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
   /// As StreamedDataset needs them.
   std::vector<RecordedCamera> recorded(const std::vector<Topic>& of) const;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/imu_table.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 
 namespace edged {
@@ -59,15 +59,12 @@ StampedLines<FrameEntry>::Spec images_by_line(const fs::path& stamps, std::strin
 
 /// The stamp of a line, in microseconds unless the heading names another unit.
 std::function<std::optional<Timestamp>(std::string_view)> microseconds_in(const fs::path& file) {
-  static const ColumnRoles roles{
+  static const TableKind kind{
       {"timestamp"},
       [](const ColumnName& name) { return names_time(name) ? std::optional<std::size_t>(0) : std::nullopt; },
       "timestamp [us]"};
-  const auto named = named_columns(file, roles);
-  const std::size_t column = named ? named->at[0] : 0;
-  const TimeUnit unit =
-      named ? time_unit_of(named->name_of(0)).value_or(TimeUnit::Microseconds) : TimeUnit::Microseconds;
-  return [column, unit](std::string_view line) {
+  const TextTable table = heading_or(file, kind, {.at = {0}, .unit = TimeUnit::Microseconds});
+  return [column = table.at[0], unit = table.unit](std::string_view line) {
     FieldReader fields(line);
     for (std::size_t i = 0; i < column; ++i) fields.next();
     return parse_stamp(fields.next(), unit);
@@ -82,17 +79,9 @@ std::optional<Timestamp> middle_of_exposure(std::string_view line) {
   return *start + (*end - *start) / 2;
 }
 
-using ReadTrajectory = Trajectory (*)(const SourcePath&, const DamageHandler&);
-
-TruthSource truth_lines(const fs::path& file, ReadTrajectory read, const std::string& frame) {
-  const auto read_lines = [file, read, frame](Repairs& repairs) -> std::optional<GroundTruth> {
-    LineDamage damage(file.string(), "groundtruth", repairs);
-    GroundTruth truth{
-        read(file, [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); }), frame};
-    if (truth.trajectory.empty()) return std::nullopt;
-    return truth;
-  };
-  return {frame, read_lines};
+TruthSource truth_lines(const fs::path& file, TimeUnit unit, const std::string& frame) {
+  return {frame,
+          [file, unit, frame](Repairs& repairs) { return read_ground_truth(file, tum_table(unit), frame, repairs); }};
 }
 
 /// The names of the files of a data set. PREFIX is the part of the name of the events file before its mark, SIDE left
@@ -113,7 +102,7 @@ struct SideNames {
   Names imu = {};
   TimeUnit imu_unit = TimeUnit::Microseconds;
   Names truth = {};
-  ReadTrajectory read_truth = nullptr;
+  TimeUnit truth_unit = TimeUnit::Seconds;
   const char* truth_frame = "body";
 };
 
@@ -129,8 +118,7 @@ const std::vector<SideNames>& side_names() {
        .images = {"PREFIXSIDE_camera"},
        .imu = {"PREFIXimu.txt", "PREFIXimu.csv"},
        .imu_unit = TimeUnit::Seconds,
-       .truth = {"PREFIXgt.txt"},
-       .read_truth = read_tum},
+       .truth = {"PREFIXgt.txt"}},
       // NAME-events_left.h5, beside the other files or a folder with these
       {.set = "tum-vie",
        .layout = "dsec",
@@ -142,7 +130,7 @@ const std::vector<SideNames>& side_names() {
        .images = {"SIDE_images"},
        .imu = {"imu_data.txt"},
        .truth = {"mocap_data.txt"},
-       .read_truth = read_tum_microseconds},
+       .truth_unit = TimeUnit::Microseconds},
       // SEQUENCE/events/left/events.h5; both sides have the same stamps, the middle of the exposure
       {.set = "dsec",
        .layout = "dsec",
@@ -160,7 +148,6 @@ const std::vector<SideNames>& side_names() {
        .images = {"images"},
        .imu = {"imu.csv"},
        .truth = {"stamped_groundtruth.txt"},
-       .read_truth = read_tum,
        .truth_frame = "events"},
   };
   return kNames;
@@ -222,9 +209,9 @@ SideFiles find_files(const SideNames& names, const fs::path& folder, const std::
     add_images(names, root, prefix, files);
     // Angular velocity first, as in all these data sets, unless the heading names another order.
     if (const auto imu = first_file(paths_of(names.imu, root, prefix)); own_imu && !files.imu && imu)
-      files.imu = documented_imu_lines(*imu, gyro_first(names.imu_unit));
+      files.imu = imu_lines(*imu, documented_imu_table(*imu, gyro_first(names.imu_unit)));
     if (const auto truth = first_file(paths_of(names.truth, root, prefix)); truth && !files.truth.read)
-      files.truth = truth_lines(*truth, names.read_truth, names.truth_frame);
+      files.truth = truth_lines(*truth, names.truth_unit, names.truth_frame);
   }
   if (!names.marks.empty() || !files.frames.empty() || files.imu || files.truth.read ||
       first_file(paths_of(names.witness, folder, prefix))) {

@@ -12,7 +12,7 @@
 
 #include "edged/dataset.hpp"
 #include "edged/io/hdf5/layouts.hpp"
-#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/repairs.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
 

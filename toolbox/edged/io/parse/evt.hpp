@@ -17,7 +17,7 @@ namespace edged {
 enum class EvtFormat {
   Evt2,         ///< words of 32 bits, one event each
   Evt21,        ///< words of 64 bits, up to 32 events of one row each
-  Evt21Legacy,  ///< words of 64 bits whose upper half is sent first (IMX636)
+  Evt21Legacy,  ///< EVT 2.1 with the upper half of a word sent first (IMX636)
   Evt3,         ///< words of 16 bits that change a state; up to 12 events each
   Dat,          ///< records of 64 bits with their full time
 };

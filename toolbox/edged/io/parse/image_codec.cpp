@@ -197,4 +197,11 @@ Bytes encode_pgm(const cv::Mat& image) {
   return bytes;
 }
 
+cv::Mat read_gray_image(const SourcePath& file) try {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 28U;
+  return decode_gray(file.read(kMostBytes));
+} catch (const Damage&) {
+  return {};
+}
+
 }  // namespace edged

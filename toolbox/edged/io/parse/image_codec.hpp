@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "edged/io/archive/bytes.hpp"
+#include "edged/io/archive/source_path.hpp"
+#include "edged/time.hpp"
 
 namespace edged {
 
@@ -22,5 +24,14 @@ Bytes encode_png(const cv::Mat& image, int level = 1);
 Bytes encode_jpeg(const cv::Mat& image, int quality);
 /// Binary. image: CV_8UC1.
 Bytes encode_pgm(const cv::Mat& image);
+
+/// Reads an image by decode_gray(); empty if the file is no image or damaged. Throws InputError if it cannot be read.
+cv::Mat read_gray_image(const SourcePath& file);
+
+/// One line of a list of images.
+struct FrameEntry {
+  Timestamp t;
+  SourcePath image;
+};
 
 }  // namespace edged

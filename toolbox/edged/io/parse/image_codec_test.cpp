@@ -9,7 +9,6 @@
 #include <string>
 
 #include "edged/core/test_data.hpp"
-#include "edged/io/parse/image_file.hpp"
 
 namespace edged {
 namespace {

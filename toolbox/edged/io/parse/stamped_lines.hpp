@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/io/parse/ahead_gate.hpp"
 #include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/stamp_jump_filter.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/time.hpp"
 
@@ -33,6 +33,14 @@ class StampedLines {
     std::string layout;   ///< the expected form of a line, for messages
     LastLine last_line = LastLine::MustEnd;
     std::function<std::optional<T>(std::string_view)> parse;
+
+    /// The stamp of the last complete line, as edged::last_stamp().
+    std::optional<Timestamp> last_stamp() const {
+      return edged::last_stamp(file, [this](std::string_view line) {
+        const auto item = parse(line);
+        return item ? std::optional(time_of(*item)) : std::nullopt;
+      });
+    }
   };
 
   StampedLines(Spec spec, Repairs& repairs)
@@ -74,18 +82,18 @@ class StampedLines {
     next_ = std::exchange(held_, std::nullopt);
   }
 
-  /// The next item that the gate accepts.
+  /// The next item that the filter accepts.
   std::optional<T> next_passed() {
     const auto pass = [this](T item) { passed_.push_back(std::move(item)); };
     while (passed_.empty() && !ended_) {
       if (auto item = parse_next()) {
-        gate_.push(std::move(*item), pass, [this](const T& wrong, Timestamp next) {
+        jump_filter_.push(std::move(*item), pass, [this](const T& wrong, Timestamp next) {
           damage_.bad(
               line_, "stamp far ahead, dropped",
               fmt::format("stamp {} s is followed by {} s", format_seconds(time_of(wrong)), format_seconds(next)));
         });
       } else {
-        gate_.finish(pass);
+        jump_filter_.finish(pass);
         ended_ = true;
       }
     }
@@ -120,7 +128,7 @@ class StampedLines {
   bool damage_counted_ = false;
   bool parsed_ = false;  ///< at least one line was parsed
   bool ended_ = false;
-  AheadGate<T> gate_;
+  StampJumpFilter<T> jump_filter_;
   std::deque<T> passed_;
   std::optional<T> next_, held_;
   std::optional<Timestamp> taken_;

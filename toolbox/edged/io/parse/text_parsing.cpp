@@ -34,34 +34,34 @@ struct Decimal {
 
 std::optional<Decimal> parse_decimal(std::string_view text) {
   Decimal d;
-  if (!text.empty() && (text[0] == '-' || text[0] == '+')) {
-    d.negative = text[0] == '-';
-    text.remove_prefix(1);
+  d.negative = text.starts_with('-');
+  if (d.negative || text.starts_with('+')) text.remove_prefix(1);
+  if (const std::size_t mark = text.find_first_of("eE"); mark != std::string_view::npos) {
+    std::string_view exponent = text.substr(mark + 1);
+    if (exponent.starts_with('+')) exponent.remove_prefix(1);
+    const auto value = parse_whole<int>(exponent);
+    if (!value) return std::nullopt;
+    d.point = *value;
+    text = text.substr(0, mark);
   }
-  bool any = false, fraction = false;
-  std::size_t i = 0;
-  for (; i < text.size(); ++i) {
-    if (text[i] == '.' && !fraction) {
-      fraction = true;
-      continue;
-    }
-    if (!is_digit(text[i])) break;
-    any = true;
-    if (!(d.digits.empty() && text[i] == '0')) d.digits.push_back(text[i]);
-    if (!fraction && !d.digits.empty()) ++d.point;
-    if (fraction && d.digits.empty()) --d.point;
-  }
-  if (!any) return std::nullopt;
-  if (i == text.size()) return d;
-  if (text[i] != 'e' && text[i] != 'E') return std::nullopt;
-  std::string_view exponent = text.substr(i + 1);
-  if (!exponent.empty() && exponent[0] == '+') exponent.remove_prefix(1);
-  int value = 0;
-  const auto [end, error] = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
-  if (error != std::errc() || end != exponent.data() + exponent.size()) return std::nullopt;
-  d.point += value;
+  const std::string_view whole = text.substr(0, text.find('.'));
+  d.digits = whole;
+  if (whole.size() < text.size()) d.digits += text.substr(whole.size() + 1);
+  if (d.digits.empty() || !std::ranges::all_of(d.digits, is_digit)) return std::nullopt;
+  const std::size_t zeros = std::min(d.digits.find_first_not_of('0'), d.digits.size());
+  d.digits.erase(0, zeros);
+  d.point += static_cast<long>(whole.size()) - static_cast<long>(zeros);
   return d;
 }
+
+struct UnitName {
+  TimeUnit unit;
+  const char* name;
+};
+constexpr UnitName kUnitNames[] = {{TimeUnit::Seconds, "s"},
+                                   {TimeUnit::Milliseconds, "ms"},
+                                   {TimeUnit::Microseconds, "us"},
+                                   {TimeUnit::Nanoseconds, "ns"}};
 
 }  // namespace
 
@@ -163,26 +163,11 @@ std::optional<double> parse_number(std::string_view field) {
 }
 
 std::optional<TimeUnit> parse_time_unit(std::string_view text) {
-  if (text == "s") return TimeUnit::Seconds;
-  if (text == "ms") return TimeUnit::Milliseconds;
-  if (text == "us") return TimeUnit::Microseconds;
-  if (text == "ns") return TimeUnit::Nanoseconds;
-  return std::nullopt;
+  const auto* known = std::ranges::find(kUnitNames, text, &UnitName::name);
+  return known == std::end(kUnitNames) ? std::nullopt : std::optional(known->unit);
 }
 
-const char* unit_name(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::Seconds:
-      return "s";
-    case TimeUnit::Milliseconds:
-      return "ms";
-    case TimeUnit::Microseconds:
-      return "us";
-    case TimeUnit::Nanoseconds:
-      return "ns";
-  }
-  return "";
-}
+const char* unit_name(TimeUnit unit) { return std::ranges::find(kUnitNames, unit, &UnitName::unit)->name; }
 
 std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
   const std::optional<Decimal> d = parse_decimal(field);
@@ -203,11 +188,8 @@ std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit) {
 }
 
 std::optional<Timestamp> parse_nanoseconds(std::string_view field) {
-  std::int64_t ns = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), ns);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  if (ns > kMaxStampNs || ns < -kMaxStampNs) return std::nullopt;
-  return Timestamp(Duration(ns));
+  const auto ns = parse_whole<std::int64_t>(field);
+  return ns && *ns <= kMaxStampNs && *ns >= -kMaxStampNs ? std::optional(timestamp_from_ns(*ns)) : std::nullopt;
 }
 
 std::string format_seconds(Timestamp t) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -41,7 +42,7 @@ class BlockReader {
   std::string damage_;
   std::vector<char> buffer_;
   std::size_t filled_ = 0;  ///< bytes in buffer_
-  std::size_t given_ = 0;   ///< of these, bytes already returned
+  std::size_t given_ = 0;   ///< bytes already returned
   bool at_end_ = false;
   bool unterminated_ = false;
 };
@@ -94,6 +95,14 @@ inline constexpr std::int64_t kMaxStampNs = 4'600'000'000'000'000'000;
 
 /// The finite number in a field. Nothing if the field contains anything else.
 std::optional<double> parse_number(std::string_view field);
+
+/// The integer in a field. Nothing if the field contains anything else, or if it is out of range.
+template <typename T>
+std::optional<T> parse_whole(std::string_view field) {
+  T value{};
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc() && end == field.data() + field.size() ? std::optional(value) : std::nullopt;
+}
 
 /// The next N fields as finite numbers. False if one is missing or no number.
 template <std::size_t N>

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
@@ -34,21 +35,12 @@ ParsedLine make_pose(Timestamp t, const Eigen::Vector3d& p, const Eigen::Quatern
 }
 
 /// The pose of a line in those columns.
-std::function<ParsedLine(std::string_view, std::size_t)> parse_pose(const PoseColumns& columns) {
-  const std::vector<std::size_t> at = {columns.t,    columns.p[0], columns.p[1], columns.p[2],
-                                       columns.q[0], columns.q[1], columns.q[2], columns.q[3]};
-  return [columns, picker = ColumnPicker(at, columns.exact)](std::string_view line, std::size_t) -> ParsedLine {
-    std::array<std::string_view, 8> fields;
-    std::array<double, 8> v{};
-    bool read = picker.pick(line, fields);
-    const auto t = read ? parse_stamp(fields[0], columns.unit) : std::nullopt;
-    for (std::size_t i = 1; read && i < fields.size(); ++i) {
-      const auto number = parse_number(fields[i]);
-      read = number.has_value();
-      v[i] = number.value_or(0.0);
-    }
-    if (!read || !t) return {std::nullopt, fmt::format("no pose in finite numbers: {}", columns.said)};
-    return make_pose(*t, {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]});
+ParseLine parse_pose(const TextTable& table) {
+  return [said = table.said, reader = RowReader(table)](std::string_view line, std::size_t) -> ParsedLine {
+    std::array<double, 7> v{};
+    const auto t = reader.read(line, v);
+    if (!t) return {std::nullopt, fmt::format("no pose in finite numbers: {}", said)};
+    return make_pose(*t, {v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]});
   };
 }
 
@@ -64,7 +56,7 @@ ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
 }
 
-Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const DamageHandler& on_damage) {
+Trajectory read_lines(const SourcePath& file, const ParseLine& parse, const DamageHandler& on_damage) {
   const auto damaged = [&](std::size_t line, const std::string& detail) {
     if (!on_damage) throw InputError::format("{}:{}: {}", file.string(), line, detail);
     on_damage(line, detail);
@@ -92,27 +84,33 @@ Trajectory read_poses(const SourcePath& file, const ParseLine& parse, const Dama
   return trajectory;
 }
 
-/// The columns by the heading, else by the documentation of the data set.
-PoseColumns documented(const SourcePath& file, const PoseColumns& columns) {
-  return named_pose_columns(file, columns.unit).value_or(columns);
+/// How a trajectory is written.
+struct WrittenForm {
+  TextTable table;
+  char separator;
+  const char* heading;
+};
+
+const WrittenForm& written_form(TrajectoryFormat format) {
+  static const WrittenForm tum{tum_table(TimeUnit::Seconds), ' ', "# timestamp [s] tx ty tz [m] qx qy qz qw\n"},
+      euroc{euroc_table(), ',', "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z\n"};
+  return format == TrajectoryFormat::Tum ? tum : euroc;
 }
 
 }  // namespace
 
-Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_pose(documented(file, tum_columns(TimeUnit::Seconds))), on_damage);
+Trajectory read_poses(const SourcePath& file, const TextTable& documented, const DamageHandler& on_damage) {
+  return read_lines(file, parse_pose(named_pose_table(file, documented.unit).value_or(documented)), on_damage);
 }
 
-Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_pose(documented(file, tum_columns(TimeUnit::Microseconds))), on_damage);
-}
+Trajectory read_tum(const SourcePath& file) { return read_poses(file, tum_table(TimeUnit::Seconds)); }
 
-Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_pose(documented(file, euroc_columns())), on_damage);
-}
-
-Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage) {
-  return read_poses(file, parse_kitti, on_damage);
+std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const TextTable& documented,
+                                             const std::string& frame, Repairs& repairs) {
+  LineDamage damage(file.string(), "groundtruth", repairs);
+  const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
+  GroundTruth truth{read_poses(file, documented, count), frame};
+  return truth.trajectory.empty() ? std::nullopt : std::optional(std::move(truth));
 }
 
 TrajectoryForm find_trajectory_form(const SourcePath& file) {
@@ -123,13 +121,13 @@ TrajectoryForm find_trajectory_form(const SourcePath& file) {
   std::size_t columns = 0;
   for (FieldReader fields(line->text); !fields.rest().empty(); ++columns) fields.next();
   const bool kitti = columns == kKittiColumns && line->text.find_first_of(",;") == std::string_view::npos &&
-                     !named_pose_columns(file, TimeUnit::Seconds);
+                     !named_pose_table(file, TimeUnit::Seconds);
   if (kitti) return {true, {.said = "[R | t] without times (KITTI)"}};
-  return {false, find_pose_columns(file)};
+  return {false, find_pose_table(file)};
 }
 
 Trajectory read_trajectory(const SourcePath& file, const TrajectoryForm& form) {
-  return read_poses(file, form.untimed ? ParseLine(parse_kitti) : parse_pose(form.columns), {});
+  return read_lines(file, form.untimed ? ParseLine(parse_kitti) : parse_pose(form.columns), {});
 }
 
 Trajectory read_trajectory(const SourcePath& file) {
@@ -145,22 +143,17 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, Trajectory
   if (!out_) throw InputError::format("{}: cannot be written", file.string());
   if (format == TrajectoryFormat::Kitti) return;
   for (const std::string& comment : comments) out_ << "# " << comment << '\n';
-  out_ << (format == TrajectoryFormat::Tum ? "# timestamp [s] tx ty tz [m] qx qy qz qw\n"
-                                           : "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w,q_x,q_y,q_z\n");
+  out_ << written_form(format).heading;
 }
 
 void TrajectoryWriter::add(const StampedPose& pose) {
-  const Eigen::Vector3d& p = pose.T.translation();
-  const Eigen::Quaterniond& q = pose.T.rotation();
   if (format_ == TrajectoryFormat::Kitti) {
     const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T = pose.T.matrix().topRows<3>();
     out_ << fmt::format("{}\n", fmt::join(T.data(), T.data() + T.size(), " "));
-  } else if (format_ == TrajectoryFormat::Tum) {
-    out_ << fmt::format("{} {} {} {} {} {} {} {}\n", format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(),
-                        q.w());
-  } else {
-    out_ << fmt::format("{},{},{},{},{},{},{},{}\n", to_ns(pose.t), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    return;
   }
+  const WrittenForm& form = written_form(format_);
+  out_ << pose_row(form.table, pose, form.separator) << '\n';
 }
 
 void TrajectoryWriter::flush() {
@@ -170,13 +163,6 @@ void TrajectoryWriter::flush() {
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::vector<std::string>& comments) {
   TrajectoryWriter writer(file, TrajectoryFormat::Tum, comments);
-  for (const StampedPose& pose : trajectory) writer.add(pose);
-  writer.flush();
-}
-
-void write_euroc_csv(const std::filesystem::path& file, const Trajectory& trajectory,
-                     const std::vector<std::string>& comments) {
-  TrajectoryWriter writer(file, TrajectoryFormat::EurocCsv, comments);
   for (const StampedPose& pose : trajectory) writer.add(pose);
   writer.flush();
 }

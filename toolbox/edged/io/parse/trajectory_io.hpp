@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "edged/dataset.hpp"
 #include "edged/io/archive/source_path.hpp"
-#include "edged/io/parse/pose_columns.hpp"
+#include "edged/io/parse/pose_table.hpp"
+#include "edged/io/parse/repairs.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
@@ -18,25 +20,23 @@ namespace edged {
 /// Called with the number and the error of each line that is left out.
 using DamageHandler = std::function<void(std::size_t line, const std::string& detail)>;
 
-/// TUM: `t tx ty tz qx qy qz qw` [s, m], # comments, unless a heading names other columns. Stamps are exact to the
-/// nanosecond, also with exponents. The returned stamps are strictly increasing. on_damage is called for a bad line
+/// The poses of a file of a data set, in the columns of its heading, else in the documented ones. Stamps are exact to
+/// the nanosecond, also with exponents. The returned stamps are strictly increasing. on_damage is called for a bad line
 /// (unreadable, not finite, no unit quaternion, stamp not after the previous one). Without on_damage, throws InputError
 /// with file and line; only of a repeated stamp, the first pose is kept and a warning logged.
-Trajectory read_tum(const SourcePath& file, const DamageHandler& on_damage = {});
+Trajectory read_poses(const SourcePath& file, const TextTable& documented, const DamageHandler& on_damage = {});
 
-/// The same with stamps in microseconds (TUM-VIE).
-Trajectory read_tum_microseconds(const SourcePath& file, const DamageHandler& on_damage = {});
+/// The poses of a file in the format of TUM, as read_poses().
+Trajectory read_tum(const SourcePath& file);
 
-/// EuRoC csv: `t_ns, px, py, pz, qw, qx, qy, qz, ...`; further columns are ignored. Bad lines as in read_tum.
-Trajectory read_euroc_csv(const SourcePath& file, const DamageHandler& on_damage = {});
-
-/// KITTI: 12 numbers of [R | t], row by row; the index of a pose is its time in seconds. Bad lines as in read_tum.
-Trajectory read_kitti(const std::filesystem::path& file, const DamageHandler& on_damage = {});
+/// The poses of that frame, by read_poses(). Bad lines are counted. Nothing for a file without poses.
+std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const TextTable& documented,
+                                             const std::string& frame, Repairs& repairs);
 
 /// The form of a file of poses.
 struct TrajectoryForm {
-  bool untimed = false;  ///< KITTI
-  PoseColumns columns;   ///< of other formats; `said` and `doubt` also of KITTI
+  bool untimed = false;  ///< KITTI: 12 numbers of [R | t], row by row; the index of a pose is its time in seconds
+  TextTable columns;     ///< for other formats; `said` and `doubt` also of KITTI
 };
 
 /// Detects the form by heading, columns, separators and stamps. Throws InputError if the file holds no poses.
@@ -45,7 +45,7 @@ TrajectoryForm find_trajectory_form(const SourcePath& file);
 /// Reads the trajectory of any program: TUM, EuRoC, KITTI, ORB-SLAM3, OKVIS2, OpenVINS, VINS-Mono and VINS-Fusion,
 /// Kalibr, maplab.
 Trajectory read_trajectory(const SourcePath& file, const TrajectoryForm& form);
-/// The same, with a warning if the form is not certain.
+/// Detects the form, with a warning if it is not certain.
 Trajectory read_trajectory(const SourcePath& file);
 
 enum class TrajectoryFormat { Tum, EurocCsv, Kitti };
@@ -70,7 +70,5 @@ class TrajectoryWriter {
 
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::vector<std::string>& comments = {});
-void write_euroc_csv(const std::filesystem::path& file, const Trajectory& trajectory,
-                     const std::vector<std::string>& comments = {});
 
 }  // namespace edged

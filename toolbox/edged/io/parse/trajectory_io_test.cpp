@@ -34,9 +34,11 @@ TEST(TrajectoryIo, TumAndEurocReadBackExactly) {
   TempFolder folder;
   const Trajectory trajectory = sample_trajectory();
   write_tum(folder.path() / "a.tum", trajectory, {"pose of the body in the world"});
-  write_euroc_csv(folder.path() / "a.csv", trajectory, {"pose of the body in the world"});
+  TrajectoryWriter euroc(folder.path() / "a.csv", TrajectoryFormat::EurocCsv, {"pose of the body in the world"});
+  for (const StampedPose& pose : trajectory) euroc.add(pose);
+  euroc.flush();
   expect_same(read_tum(folder.path() / "a.tum"), trajectory);
-  expect_same(read_euroc_csv(folder.path() / "a.csv"), trajectory);
+  expect_same(read_poses(folder.path() / "a.csv", euroc_table()), trajectory);
   expect_same(read_trajectory(folder.path() / "a.tum"), trajectory);
   expect_same(read_trajectory(folder.path() / "a.csv"), trajectory);
   EXPECT_THAT(read_text(folder.path() / "a.tum"), HasSubstr("# pose of the body in the world\n# timestamp"));
@@ -46,7 +48,8 @@ TEST(TrajectoryIo, TumAndEurocReadBackExactly) {
 TEST(TrajectoryIo, TumPutsTheScalarLastAndEurocFirst) {
   TempFolder folder;
   const auto tum = read_tum(folder.write("a.tum", "# c\n1.5 1 2 3 0 0 0.6 0.8\n"));
-  const auto csv = read_euroc_csv(folder.write("a.csv", "#t\n1500000000, 1, 2, 3, 0.8, 0, 0, 0.6, 7, 7, 7\n"));
+  const auto csv =
+      read_poses(folder.write("a.csv", "#t\n1500000000, 1, 2, 3, 0.8, 0, 0, 0.6, 7, 7, 7\n"), euroc_table());
   expect_same(tum, csv);
   EXPECT_NEAR(tum[0].T.rotation().w(), 0.8, 1e-15);
 }
@@ -66,7 +69,7 @@ TEST(TrajectoryIo, AStampBelowAnHourInNanosecondsIsKnownByTheCommas) {
   const std::string csv = "424833000,1,2,3,0.8,0,0,0.6\n466500000,1,2,3,0.8,0,0,0.6\n";
   const auto nanoseconds = folder.write("a.csv", csv);
   const auto seconds = folder.write("a.tum", "424833000 1 2 3 0 0 0.6 0.8\n");
-  expect_same(read_trajectory(nanoseconds), read_euroc_csv(nanoseconds));
+  expect_same(read_trajectory(nanoseconds), read_poses(nanoseconds, euroc_table()));
   expect_same(read_trajectory(seconds), read_tum(seconds));
 }
 
@@ -166,8 +169,8 @@ TEST(TrajectoryIo, HandsDamageToTheHandlerAndGoesOn) {
   TempFolder folder;
   std::vector<std::size_t> lines;
   const auto trajectory =
-      read_tum(folder.write("a.tum", "1 0 0 0 0 0 0 1\nrubbish\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0"),
-               [&](std::size_t line, const std::string&) { lines.push_back(line); });
+      read_poses(folder.write("a.tum", "1 0 0 0 0 0 0 1\nrubbish\n1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0"),
+                 tum_table(TimeUnit::Seconds), [&](std::size_t line, const std::string&) { lines.push_back(line); });
   EXPECT_EQ(trajectory.size(), 2u);
   EXPECT_EQ(lines, (std::vector<std::size_t>{2, 3, 5}));
 }

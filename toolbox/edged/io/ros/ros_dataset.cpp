@@ -9,7 +9,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/geometry.hpp"
-#include "edged/io/core/imu_join.hpp"
+#include "edged/io/core/imu_interpolator.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/ros/bag/open_messages.hpp"
 #include "edged/io/ros/messages/event_packets.hpp"
@@ -276,13 +276,14 @@ class RosDataset final : public StreamedDataset {
     const ImuMessage imu = read_imu_message(message);
     const bool accel = topic == *imu_topics_.accel;
     if (!(accel ? imu.accel : imu.gyro).allFinite()) throw Damage("not finite");
-    const auto samples = accel ? imu_join_.add_accel(imu.t, imu.accel) : imu_join_.add_gyro(imu.t, imu.gyro);
+    const auto samples =
+        accel ? imu_interpolator_.add_accel(imu.t, imu.accel) : imu_interpolator_.add_gyro(imu.t, imu.gyro);
     for (const ImuSample& sample : samples) push_imu(sample);
   }
 
   std::unique_ptr<MessageSource> source_;
   ImuTopics imu_topics_;
-  ImuJoin imu_join_;
+  ImuInterpolator imu_interpolator_;
   TopicChoice choice_;
   std::optional<Rig> rig_;
   std::optional<cv::Size> geometry_;

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The text folders of the Event-Camera Dataset (Mueggler et al., IJRR 2017).
-#include "edged/io/text/ecd.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -13,7 +12,7 @@
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/core/geometry.hpp"
-#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/imu_table.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/text_dataset.hpp"
@@ -32,20 +31,9 @@ bool is_uzh_fpv(const SourcePath& folder) {
   return false;
 }
 
-std::optional<GroundTruth> read_ground_truth(const SourcePath& file, const std::string& camera, Repairs& repairs) {
-  LineDamage damage(file.string(), "groundtruth", repairs);
-  const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
-  GroundTruth truth{read_tum(file, count), camera};
-  if (truth.trajectory.empty()) return std::nullopt;
-  return truth;
-}
-
 cv::Size sensor_size(const SourcePath& folder, const Rig* rig, const std::string& name) {
-  if (const RigCamera* camera = rig ? rig->find(Modality::Events) : nullptr) {
-    const auto named = std::ranges::find(rig->cameras, name, &RigCamera::name);
-    if (named != rig->cameras.end() && named->modality == Modality::Events) camera = &*named;
+  if (const RigCamera* camera = rig ? find_camera(*rig, Modality::Events, name) : nullptr)
     return {camera->model.width(), camera->model.height()};
-  }
   return ecd_image_size(folder).value_or(cv::Size(kEcdWidth, kEcdHeight));
 }
 
@@ -97,13 +85,16 @@ Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOpti
   layout.info.format = "ecd";
   const FirstCameras first =
       add_cameras(layout, folder, rig || !recording.calibration ? rig : &recording.calibration->rig, options);
-  if (const SourcePath imu = folder / "imu.txt"; options.own_imu && imu.is_file())
-    layout.imu = documented_imu_lines(imu, accel_first(TimeUnit::Seconds), true);
+  if (const SourcePath imu = folder / "imu.txt"; options.own_imu && imu.is_file()) {
+    TextTable documented = accel_first(TimeUnit::Seconds);
+    documented.exact = true;
+    layout.imu = imu_lines(imu, documented_imu_table(imu, documented));
+  }
   if (const SourcePath truth = folder / "groundtruth.txt"; truth.is_file()) {
     const bool no_event_camera = recording.calibration && !recording.calibration->rig.find(Modality::Events);
     layout.info.pose_frame = is_uzh_fpv(folder) ? "body" : no_event_camera ? first.frames : first.events;
     layout.ground_truth = [truth, camera = layout.info.pose_frame](Repairs& repairs) {
-      return read_ground_truth(truth, camera, repairs);
+      return read_ground_truth(truth, tum_table(TimeUnit::Seconds), camera, repairs);
     };
   }
   recording.dataset = std::make_unique<TextDataset>(std::move(layout));

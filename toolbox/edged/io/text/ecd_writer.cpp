@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Writes folders of the Event-Camera Dataset; of further cameras events2.txt, images2.txt and so on.
-#include "edged/io/text/ecd_writer.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 
 #include <spdlog/fmt/compile.h>
 #include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -18,7 +19,8 @@
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/parse/image_codec.hpp"
-#include "edged/io/parse/text_parsing.hpp"
+#include "edged/io/parse/imu_table.hpp"
+#include "edged/io/parse/pose_table.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
@@ -70,7 +72,7 @@ void write_calibration(const WriterSetup& setup, const fs::path& folder) {
 }
 
 /// Finds a camera by its name in the rig, or by the name that readers of formats without names use.
-const RigCamera& find_camera(const WriterSetup& setup, const std::string& name) {
+const RigCamera& camera_of_frame(const WriterSetup& setup, const std::string& name) {
   const Rig& rig = setup.calibration->rig;
   const std::vector<RigCamera> renamed = setup.calibration_when_read().rig.cameras;
   const auto known = std::ranges::find(rig.cameras, name, &RigCamera::name);
@@ -100,7 +102,7 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
                                                  : rig.cameras.front();
   if (truth.frame == to.name) return truth.trajectory;
   const RigCamera body;  // identity and no offset
-  const RigCamera& from = truth.frame == "body" ? body : find_camera(setup, truth.frame);
+  const RigCamera& from = truth.frame == "body" ? body : camera_of_frame(setup, truth.frame);
   const SE3 T_X_C = from.T_B_C.inverse() * to.T_B_C;
   Trajectory out = truth.trajectory;
   for (StampedPose& pose : out) pose = {pose.t + from.time_offset - to.time_offset, pose.T * T_X_C};
@@ -148,8 +150,9 @@ class EcdWriter final : public RecordingWriter {
   }
 
   void write(const ImuSample& s) override {
-    imu_.add(FMT_COMPILE("{} {} {} {} {} {} {}\n"), format_seconds(s.t), s.accel_B.x(), s.accel_B.y(), s.accel_B.z(),
-             s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z());
+    static const TextTable table = accel_first(TimeUnit::Seconds);
+    const std::array numbers = {s.gyro_B.x(), s.gyro_B.y(), s.gyro_B.z(), s.accel_B.x(), s.accel_B.y(), s.accel_B.z()};
+    imu_.add(FMT_COMPILE("{}\n"), format_row(table, s.t, numbers, ' '));
   }
 
   void write(const ExternalSample& sample) override {
@@ -167,12 +170,9 @@ class EcdWriter final : public RecordingWriter {
 
   void write(const GroundTruth& truth) override {
     LazyFile out(folder_ / "groundtruth.txt");
-    for (const StampedPose& pose : camera_ground_truth(truth, setup_)) {
-      const Eigen::Vector3d& p = pose.T.translation();
-      const Eigen::Quaterniond& q = pose.T.rotation();
-      out.add(FMT_COMPILE("{} {} {} {} {} {} {} {}\n"), format_seconds(pose.t), p.x(), p.y(), p.z(), q.x(), q.y(),
-              q.z(), q.w());
-    }
+    const TextTable table = tum_table(TimeUnit::Seconds);
+    for (const StampedPose& pose : camera_ground_truth(truth, setup_))
+      out.add(FMT_COMPILE("{}\n"), pose_row(table, pose, ' '));
     out.flush();
   }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // What is written reads back to the same bits.
-#include "edged/io/text/ecd_writer.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 
 #include <gmock/gmock.h>
 

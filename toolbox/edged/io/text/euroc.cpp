@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The ASL folders of the EuRoC data set (Burri et al., IJRR 2016), which TUM-VI (Schubert et al., IROS 2018) uses too.
-#include "edged/io/text/euroc.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -14,7 +14,7 @@
 #include "edged/core/check.hpp"
 #include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/dataset_folders.hpp"
-#include "edged/io/parse/imu_lines.hpp"
+#include "edged/io/parse/imu_table.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 #include "edged/io/text/text_dataset.hpp"
 
@@ -25,14 +25,6 @@ namespace {
 constexpr const char* kTruthFolders[] = {"state_groundtruth_estimate0", "mocap0"};
 /// Folders with the data from which the ground truth of EuRoC was computed: positions, poses of a marker.
 constexpr const char* kRawTruthFolders[] = {"leica0", "vicon0"};
-
-std::optional<GroundTruth> read_ground_truth(const SourcePath& file, Repairs& repairs) {
-  LineDamage damage(file.string(), "groundtruth", repairs);
-  const auto count = [&](std::size_t line, const std::string& detail) { damage.bad(line, "bad line", detail); };
-  GroundTruth truth{read_euroc_csv(file, count), "body"};
-  if (truth.trajectory.empty()) return std::nullopt;
-  return truth;
-}
 
 /// The wanted cameras that exist, or all that have images, in the order of their names; else the first camera.
 std::set<std::string> find_cameras(const SourcePath& mav0, const RecordingOptions& options) {
@@ -94,9 +86,11 @@ Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options) {
     layout.frames.push_back(
         {camera, image_lines(mav0 / camera / "data.csv", mav0 / camera / "data", TimeUnit::Nanoseconds)});
   if (const SourcePath imu = mav0 / "imu0" / "data.csv"; options.own_imu && imu.is_file())
-    layout.imu = documented_imu_lines(imu, gyro_first(TimeUnit::Nanoseconds));
+    layout.imu = imu_lines(imu, documented_imu_table(imu, gyro_first(TimeUnit::Nanoseconds)));
   if (const auto truth = find_truth(mav0))
-    layout.ground_truth = [file = *truth](Repairs& repairs) { return read_ground_truth(file, repairs); };
+    layout.ground_truth = [file = *truth](Repairs& repairs) {
+      return read_ground_truth(file, euroc_table(), "body", repairs);
+    };
 
   Recording recording;
   if ((mav0 / "cam0" / "sensor.yaml").is_file()) {

@@ -32,7 +32,8 @@ struct EventTextForm {
   bool unit_known = false;
   std::optional<cv::Size> geometry;  ///< "# geometry WxH", or a first line `W H`
   StampSample stamps;
-  std::string complaint = {};  ///< of a heading with unknown names: then the columns are found from the content
+  std::string complaint =
+      {};  ///< about a heading with unknown names, without which the columns are found from the content
 };
 
 /// The first line of a text file that holds numbers but no event, with the reason; "" if there is none.

@@ -21,24 +21,25 @@ const cv::Size kSensor(346, 260);
 /// 20000 events in some 0.2 s, with stamps of whole microseconds.
 std::vector<Event> csv_events() { return generated_events(20'000, kSensor.width, kSensor.height, 100); }
 
+std::string stamp_text(Timestamp t, TimeUnit unit) {
+  if (unit == TimeUnit::Seconds) return format_seconds(t);
+  return std::to_string(to_ns(t) / static_cast<std::int64_t>(std::pow(10.0, static_cast<int>(unit))));
+}
+
 /// columns: the order, such as "xypt"; one letter each.
 std::string csv_text(const std::vector<Event>& events, const std::string& columns, const std::string& separator,
                      TimeUnit unit, bool signed_polarity = false) {
   std::string text;
   for (const Event& e : events) {
-    std::string line;
-    for (const char column : columns) {
-      if (!line.empty()) line += separator;
-      if (column == 't' && unit == TimeUnit::Seconds) line += format_seconds(e.t);
-      if (column == 't' && unit == TimeUnit::Milliseconds) line += std::to_string(to_ns(e.t) / 1'000'000);
-      if (column == 't' && unit == TimeUnit::Microseconds) line += std::to_string(to_ns(e.t) / 1000);
-      if (column == 't' && unit == TimeUnit::Nanoseconds) line += std::to_string(to_ns(e.t));
-      if (column == 'x') line += std::to_string(e.x);
-      if (column == 'y') line += std::to_string(e.y);
-      if (column == 'p') line += e.positive ? "1" : signed_polarity ? "-1" : "0";
-      if (column == 'n') line += "77";
-    }
-    text += line + "\n";
+    const std::map<char, std::string> fields = {{'t', stamp_text(e.t, unit)},
+                                                {'x', std::to_string(e.x)},
+                                                {'y', std::to_string(e.y)},
+                                                {'p', e.positive        ? "1"
+                                                      : signed_polarity ? "-1"
+                                                                        : "0"},
+                                                {'n', "77"}};
+    for (const char column : columns) text += (column == columns[0] ? "" : separator) + fields.at(column);
+    text += "\n";
   }
   return text;
 }

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Detects the columns of a plain event file, and the unit of its stamps.
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/geometry.hpp"
-#include "edged/io/parse/text_columns.hpp"
+#include "edged/io/parse/text_table.hpp"
 #include "edged/io/text/event_csv.hpp"
 
 namespace edged {
@@ -17,7 +16,7 @@ namespace {
 constexpr std::size_t kMostRows = 4096;
 constexpr std::size_t kMostHeaderLines = 100;
 
-using Row = std::array<double, 4>;
+using Row = std::vector<double>;
 
 /// 0: time, 1: x, 2: y, 3: polarity.
 std::optional<std::size_t> event_role(const ColumnName& column) {
@@ -34,22 +33,26 @@ std::optional<std::size_t> event_role(const ColumnName& column) {
 
 /// The columns of the heading. Nothing if no line names all columns.
 std::optional<EventTextForm> form_by_heading(const SourcePath& file) {
-  static const ColumnRoles roles{{"t", "x", "y", "p"}, event_role, "t[s],x,y,p"};
-  const auto columns = named_columns(file, roles);
-  if (!columns || columns->count > EventColumns::kMost) return std::nullopt;
-  const NamedColumns& named = *columns;
+  static const TableKind kind{{"t", "x", "y", "p"}, event_role, "t[s],x,y,p"};
+  const auto heading = find_heading(file, kind);
+  if (!heading || heading->count > EventColumns::kMost) return std::nullopt;
+  const std::vector<std::size_t>& at = heading->at;
+  const auto unit = heading->time_unit();
   EventTextForm form;
-  form.columns = {.t = named.at[0], .x = named.at[1], .y = named.at[2], .p = named.at[3], .count = named.count};
-  form.columns.header_lines = named.line;
-  const auto unit = time_unit_of(named.name_of(0));
-  form.columns.unit = unit.value_or(TimeUnit::Seconds);
+  form.columns = {.t = at[0],
+                  .x = at[1],
+                  .y = at[2],
+                  .p = at[3],
+                  .count = heading->count,
+                  .unit = unit.value_or(TimeUnit::Seconds),
+                  .header_lines = heading->line};
   form.unit_known = unit.has_value();
   return form;
 }
 
 /// The numbers of a line. Nothing if it holds anything else.
-std::optional<std::vector<double>> numbers_of(std::string_view line) {
-  std::vector<double> numbers;
+std::optional<Row> numbers_of(std::string_view line) {
+  Row numbers;
   for (FieldReader fields(line); !fields.rest().empty() && numbers.size() <= EventColumns::kMost;) {
     const auto number = parse_number(fields.next());
     if (!number) return std::nullopt;
@@ -59,12 +62,12 @@ std::optional<std::vector<double>> numbers_of(std::string_view line) {
 }
 
 bool fits(const std::vector<Row>& rows, const EventColumns& order) {
-  constexpr double kMostPixels = 16384;
+  constexpr double kWidestSensor = 16384;
   std::size_t backwards = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     for (const std::size_t pixel : {order.x, order.y})
-      if (row[pixel] < 0 || row[pixel] >= kMostPixels || row[pixel] != std::floor(row[pixel])) return false;
+      if (row[pixel] < 0 || row[pixel] >= kWidestSensor || row[pixel] != std::floor(row[pixel])) return false;
     if (row[order.p] != 0 && std::abs(row[order.p]) != 1) return false;
     if (i > 0 && row[order.t] < rows[i - 1][order.t]) ++backwards;
   }
@@ -78,7 +81,6 @@ std::optional<EventColumns> columns_by_content(const std::vector<Row>& rows) {
                                       {.t = 3, .x = 0, .y = 1, .p = 2},
                                       {.t = 2, .x = 0, .y = 1, .p = 3},
                                       {.t = 0, .x = 2, .y = 3, .p = 1}};
-  if (rows.empty()) return std::nullopt;
   for (const EventColumns& order : kOrders)
     if (fits(rows, order)) return order;
   return std::nullopt;
@@ -92,76 +94,52 @@ std::optional<cv::Size> geometry_in_comment(std::string_view line) {
                                       : parse_geometry(FieldReader(line.substr(at + kKey.size())).next());
 }
 
-/// Reads lines until the form is known and there are enough rows.
-class FormFinder {
- public:
-  explicit FormFinder(const std::optional<EventTextForm>& named)
-      : form_(named.value_or(EventTextForm())), named_(named.has_value()) {}
-
-  /// False if no further line is needed, or if the file has no events.
-  bool take(std::string_view line) {
-    ++line_;
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) return true;
-    if (const auto numbers = numbers_of(line)) return take_row(line, *numbers);
-    if (!raw_.empty()) return true;  // a damaged line
-    if (const auto size = geometry_in_comment(line)) form_.geometry = size;
-    form_.columns.header_lines = line_;
-    return line_ < kMostHeaderLines;
-  }
-
-  std::optional<EventTextForm> finish(const SourcePath& file) {
-    if (raw_.empty()) return std::nullopt;
-    if (!named_) {
-      const auto columns = columns_by_content(rows_);
-      if (!columns) return std::nullopt;
-      const std::size_t header_lines = form_.columns.header_lines;
-      form_.columns = *columns, form_.columns.header_lines = header_lines;
-    }
-    sample_stamps(file);
-    return form_;
-  }
-
- private:
-  bool take_row(std::string_view line, const std::vector<double>& numbers) {
-    if (raw_.empty() && !named_ && numbers.size() == 2) {  // the size of the sensor, in the format of E2VID
-      form_.geometry = parse_geometry(fmt::format("{}x{}", numbers[0], numbers[1]));
-      form_.columns.header_lines = line_;
-      return form_.geometry.has_value();
-    }
-    if (numbers.size() != (named_ ? form_.columns.count : 4)) return !raw_.empty();  // the first row decides
-    if (!named_) rows_.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
-    raw_.emplace_back(line);
-    return raw_.size() < kMostRows;
-  }
-
-  void sample_stamps(const SourcePath& file) {
-    StampSample& s = form_.stamps;
-    const auto raw_stamp = [this](std::string_view line) -> std::optional<double> {
-      const auto numbers = numbers_of(line);
-      return numbers && numbers->size() == form_.columns.count ? std::optional((*numbers)[form_.columns.t])
-                                                               : std::nullopt;
-    };
-    for (const std::string& line : raw_) {
-      const auto stamp = raw_stamp(line);
-      if (!stamp) continue;
-      if (s.count++ == 0) s.first = *stamp;
-      s.last = std::max(s.count == 1 ? *stamp : s.last, *stamp);
-      s.fractions = s.fractions || *stamp != std::floor(*stamp);
-    }
-    s.end = s.last;
-    last_stamp(file, [&](std::string_view line) -> std::optional<Timestamp> {
-      const auto stamp = raw_stamp(line);
-      if (stamp) s.end = std::max(s.end, *stamp);
-      return stamp ? std::optional(Timestamp()) : std::nullopt;
-    });
-  }
-
-  EventTextForm form_;
-  bool named_;
-  std::size_t line_ = 0;
-  std::vector<std::string> raw_;
-  std::vector<Row> rows_;
+/// The lines at the beginning of a file: those above the events, and the numbers of the events.
+struct EventRows {
+  std::size_t header_lines = 0;
+  std::optional<cv::Size> geometry;
+  std::vector<Row> rows;
 };
+
+/// Rows have so many columns. Nothing if the first line of numbers is none, or without rows.
+std::optional<EventRows> read_rows(std::string_view block, std::size_t columns, bool named) {
+  EventRows found;
+  for (std::size_t line = 1; !block.empty() && found.rows.size() < kMostRows; ++line) {
+    const std::size_t end = block.find('\n');
+    const std::string_view text = block.substr(0, end);
+    block.remove_prefix(end + 1);
+    if (text.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    auto numbers = numbers_of(text);
+    if (numbers && numbers->size() == columns) {
+      found.rows.push_back(std::move(*numbers));
+      continue;
+    }
+    if (!found.rows.empty()) continue;  // a damaged line
+    if (line >= kMostHeaderLines || (numbers && (named || numbers->size() != 2))) return std::nullopt;
+    auto size = geometry_in_comment(text);
+    if (numbers) size = parse_geometry(fmt::format("{}x{}", (*numbers)[0], (*numbers)[1]));  // in the format of E2VID
+    if (numbers && !size) return std::nullopt;
+    if (size) found.geometry = size;
+    found.header_lines = line;
+  }
+  return found.rows.empty() ? std::nullopt : std::optional(std::move(found));
+}
+
+StampSample sample_stamps(const SourcePath& file, const std::vector<Row>& rows, const EventColumns& columns) {
+  StampSample s{.count = rows.size(), .first = rows.front()[columns.t], .last = rows.front()[columns.t]};
+  for (const Row& row : rows) {
+    s.last = std::max(s.last, row[columns.t]);
+    s.fractions = s.fractions || row[columns.t] != std::floor(row[columns.t]);
+  }
+  s.end = s.last;
+  last_stamp(file, [&](std::string_view line) -> std::optional<Timestamp> {
+    const auto numbers = numbers_of(line);
+    if (!numbers || numbers->size() != columns.count) return std::nullopt;
+    s.end = std::max(s.end, (*numbers)[columns.t]);
+    return Timestamp();
+  });
+  return s;
+}
 
 bool is_text(std::string_view block) {
   return std::ranges::none_of(block, [](char c) {
@@ -203,7 +181,7 @@ std::optional<TimeUnit> guess_time_unit(const StampSample& stamps) {
     double min_rate_hz, max_rate_hz, min_s, max_s;
   };
   const auto plausible = [&](TimeUnit unit, const Bounds& b) {
-    const double seconds = std::pow(10.0, static_cast<double>(unit) - 9);
+    const double seconds = seconds_of(unit);
     const double span = (stamps.last - stamps.first) * seconds, all = (stamps.end - stamps.first) * seconds;
     const double rate = static_cast<double>(stamps.count) / span, begin = stamps.first * seconds;
     const bool date = begin <= 30 * kDay || (begin >= kYear2000 && begin < kYear2100);  // since power-on, or of today
@@ -212,8 +190,7 @@ std::optional<TimeUnit> guess_time_unit(const StampSample& stamps) {
   if (stamps.fractions)
     return plausible(TimeUnit::Seconds, {1, 1e9, 0, kDay}) ? std::optional(TimeUnit::Seconds) : std::nullopt;
   std::optional<TimeUnit> only;
-  for (const TimeUnit unit :
-       {TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds}) {
+  for (const TimeUnit unit : kTimeUnits) {
     if (!plausible(unit, {3e3, 5e7, 0.1, kHour})) continue;
     if (only) return std::nullopt;
     only = unit;
@@ -237,14 +214,18 @@ std::optional<EventTextForm> find_event_form(const SourcePath& file) try {
   } catch (const InputError& e) {
     complaint = e.what();
   }
-  FormFinder finder(named);
-  while (!block.empty()) {
-    const std::size_t end = block.find('\n');
-    if (!finder.take(block.substr(0, end))) break;
-    block.remove_prefix(end + 1);
+  const auto found = read_rows(block, named ? named->columns.count : 4, named.has_value());
+  if (!found) return std::nullopt;
+  EventTextForm form = named.value_or(EventTextForm());
+  if (!named) {
+    const auto columns = columns_by_content(found->rows);
+    if (!columns) return std::nullopt;
+    form.columns = *columns;
   }
-  auto form = finder.finish(file);
-  if (form) form->complaint = std::move(complaint);
+  form.columns.header_lines = found->header_lines;
+  form.geometry = found->geometry;
+  form.stamps = sample_stamps(file, found->rows, form.columns);
+  form.complaint = std::move(complaint);
   return form;
 } catch (const InputError&) {
   return std::nullopt;  // not a text file

@@ -214,7 +214,7 @@ bool EventTextStream::refill() {
   const std::string_view block = blocks_.next();
   at_end_ = block.empty();
   parse_block(block);
-  if (at_end_) gate_.finish([this](const Event& passed) { place(passed); });
+  if (at_end_) jump_filter_.finish([this](const Event& passed) { place(passed); });
   ready_ = events_.size();
   if (at_end_ && !blocks_.damage().empty()) damage_.mended(line_, "file cut by damage", blocks_.damage());
   if (at_end_) return true;
@@ -242,10 +242,10 @@ void EventTextStream::parse_block(std::string_view block) {
       damage_.bad(line_, "pixel outside the sensor",
                   fmt::format("pixel ({}, {}) outside the {} x {} sensor: is this its calibration?", event.x, event.y,
                               width_, height_));
-    } else if (gate_.passes(event.t)) {
+    } else if (jump_filter_.passes(event.t)) {
       place(event);
     } else {
-      gate_.push(
+      jump_filter_.push(
           event, [this](const Event& passed) { place(passed); },
           [this](const Event& wrong, Timestamp following) {
             damage_.bad(
@@ -258,7 +258,7 @@ void EventTextStream::parse_block(std::string_view block) {
 
 /// As many lines as are of the common form, in order, and within the sensor. Returns the line after them.
 const char* EventTextStream::parse_common_lines(const char* p, const char* end) {
-  if (end - p < kCommonLine || !gate_.passes(newest_)) return p;  // it holds some, or there is none before
+  if (end - p < kCommonLine || !jump_filter_.passes(newest_)) return p;  // it holds some, or there is none before
   end = std::min(end - kCommonLine, p + kShortestCommonLine * static_cast<std::ptrdiff_t>(some_.size() - 1));
   const int width = width_, height = height_;
   CommonSeconds seconds;
@@ -266,12 +266,13 @@ const char* EventTextStream::parse_common_lines(const char* p, const char* end) 
   Event* event = some_.data();
   for (const char* next; p <= end; ++event, p = next) {
     next = parse_common_line(p, seconds, *event);
-    if (!next || event->x >= width || event->y >= height || event->t < newest || event->t - newest > gate_.kAhead)
+    if (!next || event->x >= width || event->y >= height || event->t < newest ||
+        event->t - newest > jump_filter_.kAhead)
       break;
     newest = event->t;
   }
   const std::span<const Event> common(some_.data(), event);
-  gate_.push_first(common);
+  jump_filter_.push_first(common);
   events_.insert(events_.end(), common.begin(), common.end());
   newest_ = newest;
   line_ += common.size();

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edged/io/parse/ahead_gate.hpp"
 #include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/stamp_jump_filter.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/measurement.hpp"
 
@@ -28,7 +28,7 @@ struct EventColumns {
 };
 
 /// The columns and the unit of the heading of a file, the default without a heading. Throws InputError as
-/// named_columns() does.
+/// find_heading() does.
 EventColumns named_event_columns(const SourcePath& file);
 
 /// Parses a line: stamp (exact to the nanosecond), column, row, polarity 0 or 1 (or -1), in any order and notation of
@@ -41,7 +41,7 @@ std::string why_no_event(std::string_view line, const EventColumns& columns);
 /// Parses the stamp only.
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns);
 
-/// The events of a file in time order. Memory is bounded: a block of text and its events. An AheadGate checks for
+/// The events of a file in time order. Memory is bounded: a block of text and its events. An StampJumpFilter checks for
 /// stamps far ahead. Events up to 1 ms late are sorted in; later ones, those outside the sensor and unreadable lines
 /// are left out. All are counted.
 class EventTextStream {
@@ -75,7 +75,7 @@ class EventTextStream {
   Timestamp taken_ = Timestamp::min();  ///< stamp of the last event taken
   Timestamp newest_ = Timestamp::min();
   bool at_end_ = false;
-  AheadGate<Event> gate_;
+  StampJumpFilter<Event> jump_filter_;
 };
 
 }  // namespace edged

@@ -6,7 +6,7 @@
 
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
-#include "edged/io/text/imu_text.hpp"
+#include "edged/io/text/sample_files.hpp"
 
 namespace edged {
 namespace {

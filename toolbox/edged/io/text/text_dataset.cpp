@@ -78,16 +78,10 @@ void TextDataset::find_ends() {
   const auto extend = [&info](std::optional<Timestamp> t) {
     if (t) info.end = std::max(info.end.value_or(*t), *t);
   };
-  const auto stamp_of = [](const auto& spec) {
-    return [&spec](std::string_view line) -> std::optional<Timestamp> {
-      const auto item = spec.parse(line);
-      return item ? std::optional(item->t) : std::nullopt;
-    };
-  };
   for (const EventFile& e : layout_.events)
     extend(last_stamp(e.file, [&e](std::string_view line) { return parse_event_stamp(line, e.columns); }));
-  for (const FrameFile& f : layout_.frames) extend(last_stamp(f.lines.file, stamp_of(f.lines)));
-  if (imu_) extend(last_stamp(layout_.imu->file, stamp_of(*layout_.imu)));
+  for (const FrameFile& f : layout_.frames) extend(f.lines.last_stamp());
+  if (imu_) extend(layout_.imu->last_stamp());
 }
 
 std::optional<Measurement> TextDataset::next() {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "edged/dataset.hpp"
-#include "edged/io/parse/image_file.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
 #include "edged/io/text/event_text.hpp"
 
@@ -59,7 +59,7 @@ class TextDataset final : public Dataset {
   struct FrameStream {
     std::string camera;
     StampedLines<FrameEntry> lines;
-    cv::Size size = {};  ///< of the first image
+    cv::Size size = {};  ///< size of the first image
   };
   Timestamp next_event_stamp();
   Timestamp next_frame_stamp() const;
@@ -68,7 +68,7 @@ class TextDataset final : public Dataset {
 
   TextLayout layout_;
   Repairs repairs_;
-  mutable Repairs ground_truth_repairs_;  ///< of the last reading, so that repeated readings are not counted twice
+  mutable Repairs ground_truth_repairs_;  ///< made in the last reading, so that repeated readings are not counted twice
   std::vector<EventStream> events_;
   std::vector<FrameStream> frames_;
   std::optional<StampedLines<ImuSample>> imu_;

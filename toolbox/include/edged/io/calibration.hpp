@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edged/input_error.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 
 namespace edged {
 

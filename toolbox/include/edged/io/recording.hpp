@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "edged/dataset.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 #include "edged/io/time_unit.hpp"
 
 namespace edged {
@@ -25,13 +25,14 @@ struct Recording {
 
 /// What the user may say of a recording that it does not tell itself, or not clearly.
 struct RecordingOptions {
-  std::optional<cv::Size> geometry = std::nullopt;   ///< size of the event sensor [px], for files that do not hold it
-  std::optional<TimeUnit> time_unit = std::nullopt;  ///< of the stamps in plain event files, where it is not certain
-  /// Of live sources: whether the user has had enough; asked several times a second.
+  std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
+  std::optional<TimeUnit> time_unit =
+      std::nullopt;  ///< unit of the stamps in plain event files, where it is not certain
+  /// For live sources: whether the user has had enough; asked several times a second.
   std::function<bool()> interrupted = {};
-  /// Of bags and AEDAT4: role ("events", "frames", "imu", "truth") or name of a camera to topic or "none".
+  /// For bags and AEDAT4: role ("events", "frames", "imu", "truth") or name of a camera to topic or "none".
   std::map<std::string, std::string> topics = {};
-  /// Of bags: name of a camera to its topic, as the calibration states it (Calibration::topics).
+  /// For bags: name of a camera to its topic, as the calibration states it (Calibration::topics).
   std::map<std::string, std::string> camera_topics = {};
   /// Names of the cameras to read, where a recording has several of a kind: those of the rig, else "events", "events2",
   /// "frames", "frames2", of EuRoC "cam0", "cam1". None of a kind: its first.

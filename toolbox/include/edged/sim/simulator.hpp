@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "edged/dataset.hpp"
-#include "edged/io/sensor_head.hpp"
+#include "edged/io/calibration_data.hpp"
 #include "edged/sim/simulator_config.hpp"
 
 namespace edged {

@@ -14,7 +14,7 @@ namespace edged {
 
 /// A sample has the stamp of the gyro, with the accelerometer interpolated linearly. Gyro samples without an
 /// accelerometer sample on both sides, or within a gap of these, are left out. Each stream must be in time order.
-class ImuJoin {
+class ImuInterpolator {
  public:
   /// Returns the samples that are complete now.
   std::vector<ImuSample> add_gyro(Timestamp t, const Eigen::Vector3d& gyro);

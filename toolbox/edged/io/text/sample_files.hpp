@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Samples of external sensors (height, velocity) from text files beside a recording.
+// Text files of IMU samples and of external sensors (height, velocity) beside a recording.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,17 @@
 
 namespace edged {
 
+/// The recording, with its IMU samples, if any, replaced by those of the file. Both must be on one clock. Throws
+/// InputError, with both time spans, if they do not overlap, and as find_imu_table().
+std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file);
+
 /// The recording, with the samples of that sensor replaced by those of the file. A line has the columns of
 /// `layout_of(sensor)`, or of a heading: columns in any order, units in brackets. The unit of stamps, if not named,
 /// follows from their size. Throws InputError for a heading that lacks a column, and if the clocks differ.
 std::unique_ptr<Dataset> with_external_file(std::unique_ptr<Dataset> recording, const ExternalSensor& sensor,
                                             const SourcePath& file);
 
-/// The same with the files of the folder: NAME.txt, NAME.csv or NAME0/data.csv of each sensor.
+/// The recording with the files of the folder: NAME.txt, NAME.csv or NAME0/data.csv of each external sensor.
 std::unique_ptr<Dataset> with_external_files(std::unique_ptr<Dataset> recording, const SourcePath& folder);
 
 /// The file names that with_external_files searches in a folder.

@@ -1,11 +1,21 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes Event-Camera Dataset text folders. Internal to io.
+// Folders with one text file for each sensor: the Event-Camera Dataset and EuRoC.
 #pragma once
 
+#include <memory>
+
+#include "edged/io/archive/source_path.hpp"
 #include "edged/io/core/recording_writer.hpp"
+#include "edged/io/recording.hpp"
 
 namespace edged {
+
+/// Opens a folder of the Event-Camera Dataset or of UZH-FPV, for which is_ecd_folder() is true.
+Recording open_ecd(const SourcePath& folder, const Rig* rig, const RecordingOptions& options);
+
+/// Opens a folder of EuRoC or TUM-VI. mav0: as returned by find_mav0().
+Recording open_euroc(const SourcePath& mav0, const RecordingOptions& options);
 
 /// Writes events.txt, images.txt with images/, imu.txt, groundtruth.txt, height.txt and velocity.txt, but no empty
 /// file. With a calibration, also calib.txt (event camera) and calibration.yaml (complete). groundtruth.txt holds poses

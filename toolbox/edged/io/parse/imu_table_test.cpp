@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/text/imu_text.hpp"
+#include "edged/io/parse/imu_table.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,6 +9,7 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
+#include "edged/io/text/sample_files.hpp"
 
 namespace edged {
 namespace {
@@ -26,8 +27,8 @@ std::string imu_lines(const std::string& heading, double ticks, double turn, dou
   return text;
 }
 
-ImuTextForm form_of(const TempFolder& folder, const std::string& text) {
-  return find_imu_form(folder.write("imu.csv", text));
+TextTable form_of(const TempFolder& folder, const std::string& text) {
+  return find_imu_table(folder.write("imu.csv", text));
 }
 
 std::string refusal_of(const TempFolder& folder, const std::string& text) {
@@ -43,29 +44,27 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(ImuText, ColumnsAndUnitsAreThoseThatTheHeadingNames) {
   const TempFolder folder;
-  const ImuTextForm euroc = form_of(
+  const TextTable euroc = form_of(
       folder, imu_lines("#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m "
                         "s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]",
                         1e9, 0.1, 9.8));
   EXPECT_EQ(euroc.unit, TimeUnit::Nanoseconds);
-  EXPECT_EQ(euroc.gyro, (std::array<std::size_t, 3>{1, 2, 3}));
-  EXPECT_EQ(euroc.accel_scale, 1.0);
+  EXPECT_EQ(euroc.at, gyro_first(TimeUnit::Seconds).at);
+  EXPECT_EQ(euroc.scales[3], 1.0);
   EXPECT_TRUE(euroc.named);
   EXPECT_FALSE(euroc.guessed);
 
-  const ImuTextForm other = form_of(
+  const TextTable other = form_of(
       folder, imu_lines("t_us,AccelX(g),AccelY(g),AccelZ(g),GyroX(deg/s),GyroY(deg/s),GyroZ(deg/s)", 1e6, 5, 1, true));
   EXPECT_EQ(other.unit, TimeUnit::Microseconds);
-  EXPECT_EQ(other.accel, (std::array<std::size_t, 3>{1, 2, 3}));
-  EXPECT_EQ(other.gyro, (std::array<std::size_t, 3>{4, 5, 6}));
-  EXPECT_NEAR(other.gyro_scale, kDegree, 1e-12);
-  EXPECT_NEAR(other.accel_scale, 9.80665, 1e-12);
+  EXPECT_EQ(other.at, accel_first(TimeUnit::Seconds).at);
+  EXPECT_NEAR(other.scales[0], kDegree, 1e-12);
+  EXPECT_NEAR(other.scales[3], 9.80665, 1e-12);
 
-  const ImuTextForm words =
-      form_of(folder, imu_lines("time,angular_velocity.x,angular_velocity.y,angular_velocity.z,"
-                                "linear_acceleration.x,linear_acceleration.y,linear_acceleration.z",
-                                1, 0.2, 9.7));
-  EXPECT_EQ(words.gyro, (std::array<std::size_t, 3>{1, 2, 3}));
+  const TextTable words = form_of(folder, imu_lines("time,angular_velocity.x,angular_velocity.y,angular_velocity.z,"
+                                                    "linear_acceleration.x,linear_acceleration.y,linear_acceleration.z",
+                                                    1, 0.2, 9.7));
+  EXPECT_EQ(words.at, gyro_first(TimeUnit::Seconds).at);
   EXPECT_TRUE(words.named);
   EXPECT_TRUE(words.guessed);
   EXPECT_THAT(words.said, HasSubstr("t 1 [s] (guessed)"));
@@ -73,10 +72,10 @@ TEST(ImuText, ColumnsAndUnitsAreThoseThatTheHeadingNames) {
 
 TEST(ImuText, WhatNoNameTellsIsFoundFromTheContentAndSaidToBeAGuess) {
   const TempFolder folder;
-  const ImuTextForm form = form_of(folder, imu_lines("", 1e6, 90, 1, true));
+  const TextTable form = form_of(folder, imu_lines("", 1e6, 90, 1, true));
   EXPECT_EQ(form.unit, TimeUnit::Microseconds);
-  EXPECT_EQ(form.accel, (std::array<std::size_t, 3>{1, 2, 3}));
-  EXPECT_NEAR(form.gyro_scale, kDegree, 1e-12);
+  EXPECT_EQ(form.at, accel_first(TimeUnit::Seconds).at);
+  EXPECT_NEAR(form.scales[0], kDegree, 1e-12);
   EXPECT_FALSE(form.named);
   EXPECT_TRUE(form.guessed);
   EXPECT_THAT(form.said, HasSubstr("[deg/s] (guessed)"));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/text/external_text.hpp"
+#include "edged/io/text/sample_files.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/test_support.hpp"
-#include "edged/io/text/ecd_writer.hpp"
+#include "edged/io/text/dataset_formats.hpp"
 #include "edged/io/write_recording.hpp"
 
 namespace edged {
@@ -96,7 +96,7 @@ TEST_F(ExternalText, AFirstLineThatLacksAColumnIsRefusedWithFileLineAndRemedy) {
     FAIL();
   } catch (const InputError& error) {
     const std::string text = error.what();
-    EXPECT_NE(text.find("velocity.csv: line 1: `t,vx,vy` has no column vz"), std::string::npos) << text;
+    EXPECT_NE(text.find("velocity.csv:1: `t,vx,vy` has no column vz"), std::string::npos) << text;
     EXPECT_NE(text.find("t[s],vx[m/s],vy[m/s],vz[m/s]"), std::string::npos) << text;
   }
 }

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/archive/zip_writer.hpp"
+#include "edged/io/archive/zip_archive.hpp"
 
 #include <gtest/gtest.h>
 
-#include "edged/io/archive/zip_archive.hpp"
 #include "edged/io/test_support.hpp"
 
 namespace edged {

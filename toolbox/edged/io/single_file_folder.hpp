@@ -21,6 +21,6 @@ std::optional<std::string> find_main_file(const SourcePath& folder, bool (*recog
 std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::set<std::string>& others);
 
 /// Logs the subfolders, and the files with data, pictures or a calibration, that are not read.
-void tell_unread(const SourcePath& folder, const std::set<std::string>& read);
+void warn_unread(const SourcePath& folder, const std::set<std::string>& read);
 
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/loose_folder.hpp"
+#include "edged/io/single_file_folder.hpp"
 
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -10,10 +10,10 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/bytes.hpp"
+#include "edged/io/parse/imu_table.hpp"
 #include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/text/event_csv.hpp"
-#include "edged/io/text/external_text.hpp"
-#include "edged/io/text/imu_text.hpp"
+#include "edged/io/text/sample_files.hpp"
 
 namespace edged {
 namespace {
@@ -44,7 +44,7 @@ std::optional<std::string> only_one(const SourcePath& folder, const std::vector<
 
 /// True if the heading names the axes of an IMU, or if the file name does and the content fits.
 bool holds_imu(const SourcePath& file) try {
-  return find_imu_form(file).named || lower_case(file.name()).find("imu") != std::string::npos;
+  return find_imu_table(file).named || lower_case(file.name()).find("imu") != std::string::npos;
 } catch (const InputError&) {
   return false;
 }
@@ -78,7 +78,7 @@ std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::s
   return found.size() == 1 ? std::optional(folder / found.front()) : std::nullopt;
 }
 
-void tell_unread(const SourcePath& folder, const std::set<std::string>& read) {
+void warn_unread(const SourcePath& folder, const std::set<std::string>& read) {
   static const std::set<std::string> kData = {".csv",   ".txt", ".bag",  ".raw", ".dat", ".aedat4",
                                               ".aedat", ".h5",  ".db3",  ".zip", ".npz", ".mcap",
                                               ".npy",   ".mat", ".hdf5", ".mp4", ".avi"};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/core/imu_join.hpp"
+#include "edged/io/core/imu_interpolator.hpp"
 
 namespace edged {
 namespace {
@@ -10,21 +10,21 @@ constexpr std::size_t kMostWaiting = 10'000;
 
 }  // namespace
 
-std::vector<ImuSample> ImuJoin::add_gyro(Timestamp t, const Eigen::Vector3d& gyro) {
+std::vector<ImuSample> ImuInterpolator::add_gyro(Timestamp t, const Eigen::Vector3d& gyro) {
   if (!gyro_.empty() && t <= gyro_.back().first) return {};
   gyro_.emplace_back(t, gyro);
   if (gyro_.size() > kMostWaiting) gyro_.pop_front();
   return complete();
 }
 
-std::vector<ImuSample> ImuJoin::add_accel(Timestamp t, const Eigen::Vector3d& accel) {
+std::vector<ImuSample> ImuInterpolator::add_accel(Timestamp t, const Eigen::Vector3d& accel) {
   if (!accel_.empty() && t <= accel_.back().first) return {};
   accel_.emplace_back(t, accel);
   if (accel_.size() > kMostWaiting) accel_.pop_front();
   return complete();
 }
 
-std::vector<ImuSample> ImuJoin::complete() {
+std::vector<ImuSample> ImuInterpolator::complete() {
   std::vector<ImuSample> samples;
   while (!gyro_.empty() && !accel_.empty() && gyro_.front().first <= accel_.back().first) {
     const auto [t, gyro] = gyro_.front();

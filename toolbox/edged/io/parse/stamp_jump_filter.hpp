@@ -20,7 +20,7 @@ namespace edged {
 /// dropped if an earlier stamp follows: its stamps were wrong. The first item of all is held until the second. A
 /// recording can wait for what follows, so a whole run of items is held. JumpGate, for live streams, holds one item.
 template <typename T>
-class AheadGate {
+class StampJumpFilter {
  public:
   static constexpr Duration kAhead = std::chrono::milliseconds(500);
   static constexpr Duration kSure = std::chrono::milliseconds(100);
@@ -53,7 +53,7 @@ class AheadGate {
     return true;
   }
 
-  /// Of many items in order, the number of leading ones that pass unchanged.
+  /// The number of leading items, of many in order, that pass unchanged.
   std::size_t push_first(std::span<const T> items) {
     if (!items.empty() && passes(time_of(items.back()))) return items.size();
     const auto stop = std::ranges::find_if(items, [this](const T& item) { return !passes(time_of(item)); });
@@ -81,7 +81,7 @@ class AheadGate {
   }
 
   std::vector<T> waiting_;
-  Timestamp begin_, end_;  ///< of the held items
+  Timestamp begin_, end_;  ///< first and newest stamp of the held items
   std::optional<Timestamp> newest_;
 };
 

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// Intrinsics in the keys of OpenCV: ROS camera_info, OpenCV's samples, Metavision before version 5 and the first DV;
+// and Metavision's own from version 5 on.
+#include <spdlog/fmt/ranges.h>
+
+#include "edged/camera/lens_table.hpp"
+#include "edged/core/check.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
+#include "edged/io/calibration.hpp"
+
+namespace edged {
+namespace {
+
+/// The name of a lens and its coefficients in OpenCV's order.
+struct OpenCvLens {
+  std::string name;
+  std::vector<double> coefficients;
+};
+
+OpenCvLens opencv_lens(const RigCamera& camera) {
+  const CameraModel& m = camera.model;
+  const LensModel& lens = lens_model(m.distortion());
+  if (m.distortion() == DistortionModel::None) return {"plumb_bob", std::vector<double>(5, 0.0)};
+  if (lens.ros.empty())
+    throw InputError::format(
+        "camera {}: OpenCV has no lens '{}'; choose --lens radtan, rational or equidistant, or --format edged",
+        camera.name, lens.name);
+  const auto& k = m.coefficients();
+  return {std::string(lens.ros), {k.begin(), k.begin() + static_cast<std::ptrdiff_t>(lens.max_coefficients)}};
+}
+
+}  // namespace
+
+std::vector<double> read_camera_matrix(const YamlReader& matrix) {
+  const std::vector<double> K = matrix.numbers();
+  if (K.size() != 9 || K[1] != 0 || K[3] != 0 || K[6] != 0 || K[7] != 0 || K[8] != 1)
+    matrix.fail("must be [fx, 0, cx, 0, fy, cy, 0, 0, 1]");
+  return {K[0], K[4], K[2], K[5]};
+}
+
+std::string opencv_distortion(const YamlReader& root) {
+  const bool fisheye = root.text_or("use_fisheye_model", "0") == "1";
+  return root.text_or("distortion_model", fisheye ? "equidistant" : "plumb_bob");
+}
+
+Lens read_opencv_lens(const YamlReader& root, const std::string& distortion) {
+  const YamlReader matrix = root.at("camera_matrix");
+  const auto image_size = root.find("image_size");  // of Metavision; the other formats have two keys
+  const std::vector<double> size = image_size
+                                       ? image_size->numbers(2, "[width, height]")
+                                       : std::vector{root.at("image_width").number(), root.at("image_height").number()};
+  const auto coefficients = root.find("distortion_coefficients");
+  Lens lens;
+  lens.model = make_model(matrix, {size[0], size[1], read_camera_matrix(matrix), coefficients ? distortion : "none",
+                                   coefficients ? coefficients->numbers() : std::vector<double>{}});
+  return lens;
+}
+
+CalibrationFile read_camera_info(const YamlReader& root) {
+  Lens lens = read_opencv_lens(root, opencv_distortion(root));
+  lens.name = root.text_or("camera_name", std::filesystem::path(root.file().name()).stem().string());
+  lens.words = lens.name + " " + root.file().name();
+  if (root.find("n_kept_views")) lens.sees = Sees::Events;  // of Metavision
+  CalibrationFile out;
+  out.has_extrinsics = false;
+  out.lenses = {lens};
+  return out;
+}
+
+bool is_metavision(const YamlReader& root) { return root.find("K") && root.find("width"); }
+
+CalibrationFile read_metavision(const YamlReader& root) {
+  if (const std::string type = root.text_or("type", "pinhole"); type != "pinhole")
+    root.at("type").fail("camera type " + type + " is not supported; pinhole is");
+  Lens lens;
+  lens.name = "events";
+  lens.sees = Sees::Events;
+  lens.model = make_model(root, {root.at("width").number(), root.at("height").number(),
+                                 read_camera_matrix(root.at("K")), "radtan", root.at("D").numbers()});
+  CalibrationFile out;
+  out.has_extrinsics = false;
+  out.lenses = {lens};
+  return out;
+}
+
+CalibrationFile refuse_metavision_extrinsics(const YamlReader& root) {
+  root.at("T_slave_master")
+      .fail(
+          "Metavision's extrinsics are of two cameras to each other, not to an IMU: give the intrinsics.json of the "
+          "camera, and write its extrinsics to the IMU into a file of `edged calib intrinsics.json --out head.yaml`");
+}
+
+std::string to_opencv_yaml(const RigCamera& camera) {
+  const CameraModel& m = camera.model;
+  const OpenCvLens lens = opencv_lens(camera);
+  return fmt::format(
+      "%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\ncamera_name: {}\ncamera_matrix: !!opencv-matrix\n   rows: 3\n"
+      "   cols: 3\n   dt: d\n   data: [ {}, 0., {}, 0., {}, {}, 0., 0., 1. ]\ndistortion_model: {}\n"
+      "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: {}\n   dt: d\n   data: [ {} ]\n",
+      m.width(), m.height(), camera.name, m.fx(), m.cx(), m.fy(), m.cy(), lens.name, lens.coefficients.size(),
+      fmt::join(lens.coefficients, ", "));
+}
+
+}  // namespace edged
