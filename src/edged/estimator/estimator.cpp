@@ -201,18 +201,18 @@ void Estimator::append(const EstimatorInput& input) {
   OdomState nav = propagate(before, imu);
   nav.t = input.t;
   WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
-  const bool rested =
+  const bool stationary =
       standstill_.still_by_imu() || (standstill_.still() && before.v_O.norm() < kEstimatorTuning.max_standstill_speed);
-  state.stationary = rested;
+  state.stationary = stationary;
   const StateId id = window_.add_state(std::move(state), input.motion.gyro_clipped()
                                                              ? inflate_during_gyro_saturation(input.observations)
                                                              : input.observations);
   external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   OdomState rest;
-  if (!rested && stationary_by_vision())
+  if (!stationary && stationary_by_vision())
     window_.add_soft_prior(
         motion_prior({BlockKind::Motion, id}, motion_block(rest), {kEstimatorTuning.vision_rest_sigma, kFree, kFree}));
-  if (!rested) return;
+  if (!stationary) return;
   rest.bias_gyro = standstill_.mean_gyro_B();
   const double bias_sigma = standstill_.still_by_imu() ? kEstimatorTuning.rest_gyro_bias_sigma : kFree;
   window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest),

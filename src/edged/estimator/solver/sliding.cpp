@@ -121,10 +121,10 @@ MarginalizedKeyframe record_of(const Window& window, StateId id) {
 void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   const auto state = window.states().find(id), next = std::next(state);
   Preintegration joined = state->second.imu.joined(next->second.imu);
-  const bool rested = state->second.stationary && next->second.stationary;
+  const bool stationary = state->second.stationary && next->second.stationary;
   // The begin and the end of a standstill are kept: an interval joined across one would lose the standstill factor.
   const bool between = state->second.stationary != next->second.stationary;
-  if (between || joined.dt() > max_interval_s * (rested ? kSolverTuning.rest_stretch : 1.0)) {
+  if (between || joined.dt() > max_interval_s * (stationary ? kSolverTuning.rest_stretch : 1.0)) {
     window.make_keyframe(id);
   } else {
     window.drop_state(id, std::move(joined));
