@@ -8,6 +8,21 @@
 
 namespace edged {
 
+void DepthConfig::visit(ConfigFields& fields) {
+  fields.choice("source", source,
+                {{"constant", DepthSource::Constant},
+                 {"landmarks", DepthSource::Landmarks},
+                 {"network", DepthSource::Network},
+                 {"fused", DepthSource::Fused}},
+                {.effect = "Source of the scene depth. fused: landmarks, a network scaled to them, and the constant if "
+                           "both are missing."});
+  fields.add("constant_m", constant_m, {"m", 0.05, 1000, "Scene depth when no source has a measurement."});
+  fields.add("region_share", region_share,
+             {"", 0.05, 1, "Size of the central region, as a share of each side of the image."});
+  fields.group("filter", filter);
+  fields.group("network", network);
+}
+
 std::unique_ptr<DepthPrior> make_depth_prior(const DepthConfig& config, const CameraModel& camera,
                                              Inference inference) {
   const ConstantDepth constant(config.constant_m, kSceneDepthTuning.constant_sigma_ln);

@@ -3,11 +3,11 @@
 #include "edged/events/accumulate.hpp"
 
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/events/sharpness.hpp"
 
 namespace edged {
 namespace {
@@ -62,6 +62,14 @@ double spread_along_axis(double blur_sigma_px) {
 }
 
 }  // namespace
+
+double image_variance(const cv::Mat& image) {
+  if (image.empty()) return 0.0;
+  EDGED_CHECK(image.channels() == 1, "image has {} channels", image.channels());
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(image, mean, deviation);
+  return deviation[0] * deviation[0];
+}
 
 void EventFrameConfig::visit(ConfigFields& fields) {
   fields.choice("interpolation", interpolation,

@@ -21,6 +21,10 @@ struct EventFrame {
   double structure = 0.0;
 };
 
+/// Variance of the values of a one-channel image, 0 for an empty one: well compensated events lie on edges and raise it
+/// (Gallego, Rebecq, Scaramuzza, "A Unifying Contrast Maximization Framework for Event Cameras", CVPR 2018).
+double image_variance(const cv::Mat& image);
+
 /// Renders event frames of one camera, reusing its buffers.
 class EventFrameRenderer {
  public:

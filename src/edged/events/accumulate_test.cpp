@@ -11,7 +11,6 @@
 #include <random>
 
 #include "edged/core/check.hpp"
-#include "edged/events/sharpness.hpp"
 #include "edged/events/test_support.hpp"
 
 namespace edged {
@@ -233,6 +232,14 @@ TEST(EventFrame, IsSharpestAtTheTrueDepth) {
     if (v > best) best = v, best_depth = depth;
   }
   EXPECT_NEAR(best_depth, 1.5, 0.12);
+}
+
+TEST(ImageVariance, IsTheMeanSquaredDistanceFromTheMeanOfOneChannel) {
+  EXPECT_NEAR(image_variance((cv::Mat_<float>(2, 2) << 1, 3, 5, 7)), 5.0, 1e-12);
+  EXPECT_NEAR(image_variance((cv::Mat_<unsigned char>(1, 4) << 0, 0, 4, 4)), 4.0, 1e-12);
+  EXPECT_EQ(image_variance(cv::Mat(4, 5, CV_32F, cv::Scalar(3.0))), 0.0);
+  EXPECT_EQ(image_variance(cv::Mat()), 0.0);
+  EXPECT_THROW(image_variance(cv::Mat(2, 2, CV_8UC3)), CheckError);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 
 #include "edged/core/test_data.hpp"
 #include "edged/events/accumulate.hpp"
-#include "edged/events/sharpness.hpp"
 
 namespace edged {
 namespace {

@@ -3,23 +3,13 @@
 #include "edged/step.hpp"
 
 #include <algorithm>
-
-#include "edged/core/check.hpp"
+#include <array>
 
 namespace edged {
 
 std::string to_string(TrackingStatus status) {
-  switch (status) {
-    case TrackingStatus::Initializing:
-      return "Initializing";
-    case TrackingStatus::Good:
-      return "Good";
-    case TrackingStatus::Degraded:
-      return "Degraded";
-    case TrackingStatus::Lost:
-      return "Lost";
-  }
-  EDGED_CHECK(false, "status {}", static_cast<int>(status));
+  constexpr std::array kNames = {"Initializing", "Good", "Degraded", "Lost"};
+  return kNames.at(static_cast<std::size_t>(status));
 }
 
 bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
