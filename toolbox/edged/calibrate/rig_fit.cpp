@@ -239,7 +239,7 @@ RigFit fit_rig(const std::vector<TargetCamera>& cameras, const TargetLayout& lay
     for (const CameraBlocks& camera : unknowns.cameras) moved_s = std::max(moved_s, std::abs(camera.correction_s));
     const bool settled = !has_imu || moved_s < kClockSettled_s || round + 1 == kMostRounds;
     const Eigen::VectorXd variances = settled ? problem.calibration_covariance().diagonal().eval() : Eigen::VectorXd();
-    problem.take_corrections();
+    problem.apply_corrections();
     if (settled) {
       RigFit out = result_of(unknowns, variances, cameras, layout);
       out.has_imu = has_imu;

@@ -87,7 +87,7 @@ RigProblem::RigProblem(RigUnknowns& unknowns, const std::vector<TargetCamera>& c
   problem_.AddParameterBlock(unknowns_.tilt.data(), 2);
   add_views(cameras, layout);
   if (has_imu_) add_imu(imu, noise);
-  hold_what_is_known(cameras);
+  fix_known_parameters(cameras);
 }
 
 void RigProblem::add_views(const std::vector<TargetCamera>& cameras, const TargetLayout& layout) {
@@ -121,7 +121,7 @@ void RigProblem::add_imu(std::span<const ImuSample> imu, const ImuNoise& noise) 
   problem_.AddResidualBlock(bias_prior(), nullptr, unknowns_.states.front().motion.data());
 }
 
-void RigProblem::hold_what_is_known(const std::vector<TargetCamera>& cameras) {
+void RigProblem::fix_known_parameters(const std::vector<TargetCamera>& cameras) {
   if (has_imu_) return;
   for (RigState& state : unknowns_.states) problem_.SetParameterBlockConstant(state.motion.data());
   for (std::size_t i = 0; i < cameras.size(); ++i)
@@ -137,7 +137,7 @@ void RigProblem::solve(int most_steps) {
                              first_line(summary.message));
 }
 
-void RigProblem::take_corrections() {
+void RigProblem::apply_corrections() {
   for (CameraBlocks& camera : unknowns_.cameras) {
     camera.time_offset_s += camera.correction_s;
     camera.correction_s = 0.0;

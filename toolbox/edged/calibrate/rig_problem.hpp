@@ -49,7 +49,7 @@ class RigProblem {
 
   void solve(int most_steps);
   /// Moves what the corrections are relative to, so that they are zero.
-  void take_corrections();
+  void apply_corrections();
   /// Blocks of T_B_C (6), clock and lens (kLensParameters), one camera after the other; rows of what is not estimated
   /// are 0.
   Eigen::MatrixXd calibration_covariance();
@@ -58,7 +58,7 @@ class RigProblem {
  private:
   void add_views(const std::vector<TargetCamera>& cameras, const TargetLayout& layout);
   void add_imu(std::span<const ImuSample> imu, const ImuNoise& noise);
-  void hold_what_is_known(const std::vector<TargetCamera>& cameras);
+  void fix_known_parameters(const std::vector<TargetCamera>& cameras);
 
   RigUnknowns& unknowns_;
   bool has_imu_;

@@ -64,7 +64,7 @@ Duration first_look(const RigCamera& camera) {
 /// between parts of the recording does not contain common errors of few corners. (Mirror recordings, pieces of 8 s,
 /// calibrated right: events up to 14 deg off at a sigma of 1 deg and up to 100 ms, so that their time offset is left to
 /// the estimator; frames up to 12 deg at 0.8 deg in the dark.)
-GyroAgreement less_sure(GyroAgreement agreement, const RigCamera& given) {
+GyroAgreement inflated(GyroAgreement agreement, const RigCamera& given) {
   constexpr double kLess = 2.0;
   const bool events = given.modality == Modality::Events;
   const double common = (events ? 5.0 : 3.0) * kDegree;
@@ -114,8 +114,8 @@ RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics
     const RigCamera& camera = *used.find(modality);
     cameras_.push_back({camera, VisualTurns(camera, kCorners)});
     cameras_.back().next_look = first_look(camera);
-    cameras_.back().twin = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
-    cameras_.back().waits = cameras_.back().twin;
+    cameras_.back().same_lens = cameras_.size() > 1 && is_same_lens(cameras_.front().given, camera);
+    cameras_.back().deferred = cameras_.back().same_lens;
   }
 }
 
@@ -131,7 +131,7 @@ void RunCheck::add(const Measurement& measurement) {
     imu_.extend(*first, *last);
     accel_axes_.add(*sample);
     const bool all_told = std::ranges::all_of(cameras_, [](const Camera& camera) {
-      return camera.waits || (camera.done && agrees(camera.agreement));  // an IMU on another clock may lag
+      return camera.deferred || (camera.done && agrees(camera.agreement));  // an IMU on another clock may lag
     });
     if (all_told) return;
     gyro_.add(*sample);
@@ -139,7 +139,7 @@ void RunCheck::add(const Measurement& measurement) {
   } else if (name) {
     visual_.extend(*first, *last);
     for (Camera& camera : cameras_) follow(camera, measurement);
-    if (visual_.length > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().waits = false;
+    if (visual_.length > kPatience && !agrees(cameras_.front().agreement)) cameras_.back().deferred = false;
   }
   if (!looked_ && std::min(imu_.length, visual_.length) >= kFirstUnits) look_ = true;
 }
@@ -163,7 +163,7 @@ std::size_t RunCheck::EventThinning::next(const Measurement& measurement) {
 }
 
 void RunCheck::follow(Camera& camera, const Measurement& measurement) {
-  if (camera.done || camera.waits) return;
+  if (camera.done || camera.deferred) return;
   const bool pauses = camera.turning >= first_look(camera.given) && (visual_.length / kBurst) % 2 == 1;
   if (pauses || !(rate_ > kLeastTurningRate)) return;
   camera.visual.add(measurement);
@@ -196,17 +196,17 @@ void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& sta
     out.error(fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
                           camera.given.name, camera.contradiction_deg),
               "check the rotation of T_B_C and its direction: `edged calib` shows both");
-  if (!camera.twin) check_lever_arm(camera.given, out);
+  if (!camera.same_lens) check_lever_arm(camera.given, out);
 }
 
 std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics) const {
   CheckInput input{statistics, true};
   for (const Camera& camera : cameras_) {
-    if (camera.waits) continue;
+    if (camera.deferred) continue;
     input.cameras.push_back(
         {camera.given, has_extrinsics_, std::nullopt,
          other_clock_rate(camera.visual.turns(), gyro_, camera.given.time_offset, statistics.imu_span_ratio())});
-    if (camera.done && camera.agreement) input.cameras.back().agreement = less_sure(*camera.agreement, camera.given);
+    if (camera.done && camera.agreement) input.cameras.back().agreement = inflated(*camera.agreement, camera.given);
   }
   Findings out{check_recording(input)};
   for (const Camera& camera : cameras_) check_camera(camera, statistics, out);
@@ -224,10 +224,10 @@ std::vector<Finding> RunCheck::news() {
   looked_ = true;
   std::vector<Finding> fresh = check(collector_.so_far());
   std::erase_if(fresh, [this](const Finding& finding) {
-    const bool known = std::ranges::find(told_, subject_of(finding)) != told_.end();
+    const bool known = std::ranges::find(reported_, subject_of(finding)) != reported_.end();
     return known || finding.severity != Severity::Error;
   });
-  for (const Finding& finding : fresh) told_.push_back(subject_of(finding));
+  for (const Finding& finding : fresh) reported_.push_back(subject_of(finding));
   return fresh;
 }
 
@@ -246,7 +246,7 @@ bool RunCheck::agrees_with(const RigCamera& estimated) const {
 
 std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
   for (Camera& camera : cameras_) {
-    if (!camera.done && !camera.waits && camera.turning >= first_look(camera.given)) compare(camera);
+    if (!camera.done && !camera.deferred && camera.turning >= first_look(camera.given)) compare(camera);
     camera.done = true;
   }
   return check(collector_.result(dataset, truth));

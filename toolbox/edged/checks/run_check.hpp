@@ -40,8 +40,8 @@ class RunCheck {
     Duration turning{0};      ///< duration of rotation so far
     Duration next_look{0};    ///< duration of rotation at the next comparison
     bool done = false;        ///< comparison finished
-    bool twin = false;        ///< has the lens of the previous camera
-    bool waits = false;       ///< the previous camera is checked instead, unless it has too little data
+    bool same_lens = false;   ///< has the lens of the previous camera
+    bool deferred = false;    ///< the previous camera is checked instead, unless it has too little data
     /// Angle to a rotation that fits clearly better than the calibration, if the check of `edged doctor` is
     /// undetermined.
     double contradiction_deg = 0.0;
@@ -77,7 +77,7 @@ class RunCheck {
   StreamSpan imu_, visual_;
   EventThinning thinning_;
   bool look_ = false, looked_ = false;  ///< state of the checks of the IMU
-  std::vector<std::string> told_;
+  std::vector<std::string> reported_;
 };
 
 }  // namespace edged

@@ -71,7 +71,7 @@ struct Equations {
 void add_heights(std::span<const HeightSample> window, const GyroIntegral& gyro, Equations& equations) {
   const Timestamp begin = window.front().t, first = std::max(gyro.first(), begin - kForGravity),
                   last = std::min(gyro.last(), window.back().t + kForGravity);
-  const auto held = gyro.pushed_between(first, last - Duration(1));
+  const auto held = gyro.velocity_change(first, last - Duration(1));
   if (!held || held->norm() == 0.0) return;
   const Vector3d up = held->normalized();
   const auto n = static_cast<Eigen::Index>(window.size());
@@ -81,9 +81,9 @@ void add_heights(std::span<const HeightSample> window, const GyroIntegral& gyro,
   for (Eigen::Index i = 0; i < n; ++i) {
     const HeightSample& sample = window[static_cast<std::size_t>(i)];
     const double t = to_seconds(sample.t - begin);
-    const auto pushed = gyro.pushed_between(begin, sample.t);
-    if (!pushed) return;
-    const double now = up.dot(*pushed);
+    const auto velocity = gyro.velocity_change(begin, sample.t);
+    if (!velocity) return;
+    const double now = up.dot(*velocity);
     if (i > 0) climb += 0.5 * (speed + now) * (t - own(i - 1, 1));
     speed = now;
     climbed(i, 0) = climb;
@@ -93,7 +93,7 @@ void add_heights(std::span<const HeightSample> window, const GyroIntegral& gyro,
   equations.add(climbed, height, own);
 }
 
-/// Unknowns: the columns of v_B over v_S, and the lever arm l: R (M u - omega x l) = v_0 + g t + pushed.
+/// Unknowns: the columns of v_B over v_S, and the lever arm l: R (M u - omega x l) = v_0 + g t + velocity.
 void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& gyro, double noise,
                     Equations& equations) {
   const Timestamp begin = window.front().t;
@@ -104,9 +104,9 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
   for (Eigen::Index i = 0; i < n; ++i) {
     const VelocitySample& sample = window[static_cast<std::size_t>(i)];
     const auto attitude = gyro.attitude_at(sample.t);
-    const auto pushed = gyro.pushed_between(begin, sample.t);
+    const auto velocity = gyro.velocity_change(begin, sample.t);
     const auto turned = gyro.between(sample.t - kForRate, sample.t + kForRate);
-    if (!attitude || !pushed || !turned) return;
+    if (!attitude || !velocity || !turned) return;
     const Matrix3d R = attitude->toRotationMatrix();
     const Vector3d omega = *turned / to_seconds(2 * kForRate);
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +116,7 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
     }
     A.block<3, 3>(3 * i, 9) = -R * skew(omega);
     own.block<3, 6>(3 * i, 0) << Matrix3d::Identity(), to_seconds(sample.t - begin) * Matrix3d::Identity();
-    y.segment<3>(3 * i) = *pushed;
+    y.segment<3>(3 * i) = *velocity;
   }
   equations.add(A, y, own);
   // Noise increases the squares of the columns, so it would bias their length.
@@ -127,15 +127,15 @@ void add_velocities(std::span<const VelocitySample> window, const GyroIntegral& 
 }
 
 /// The rotation nearest to weighted columns, and its scale.
-struct Turned {
+struct RotationFit {
   Matrix3d R;
   double scale, misfit;  ///< misfit: mean squared residual of a column
 };
 
-Turned nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
+RotationFit nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
   const Eigen::JacobiSVD<Matrix3d> svd(M * weight.asDiagonal(), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double handed = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  Turned turned;
+  RotationFit turned;
   turned.R = svd.matrixU() * Vector3d(1.0, 1.0, handed).asDiagonal() * svd.matrixV().transpose();
   turned.scale = M.cwiseProduct(turned.R).colwise().sum().dot(weight) / weight.sum();
   turned.misfit = (M - turned.scale * turned.R).colwise().squaredNorm().dot(weight) / weight.sum();
@@ -145,12 +145,12 @@ Turned nearest_rotation(const Matrix3d& M, const Vector3d& weight) {
 double angle_of(const Matrix3d& R) { return so3::log(Eigen::Quaterniond(R)).norm(); }
 
 /// The axis with the wrong sign, or all axes, if no rotation fits. The signs with the smallest rotation are chosen.
-void look_for_mirror(const Matrix3d& M, const Vector3d& weight, Turned& best, VelocityAgreement& agreement) {
+void look_for_mirror(const Matrix3d& M, const Vector3d& weight, RotationFit& best, VelocityAgreement& agreement) {
   constexpr double kBad = 0.1, kFarBetter = 0.2;
   const double without = best.misfit;
   if (without < kBad) return;
   for (const Vector3d& signs : {Vector3d(-1, -1, -1), Vector3d(-1, 1, 1), Vector3d(1, -1, 1), Vector3d(1, 1, -1)}) {
-    const Turned found = nearest_rotation(M * signs.asDiagonal(), weight);
+    const RotationFit found = nearest_rotation(M * signs.asDiagonal(), weight);
     if (found.misfit > kFarBetter * without) continue;
     if (agreement.left_handed && angle_of(found.R) >= angle_of(best.R)) continue;
     best = found;
@@ -275,7 +275,7 @@ std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySa
   const Matrix3d M = Eigen::Map<const Matrix3d>(x.data());
   VelocityAgreement found;
   found.sigma = best_sigma;
-  Turned turned = nearest_rotation(M, weight);
+  RotationFit turned = nearest_rotation(M, weight);
   if (1.0 / std::sqrt(weight.minCoeff()) < kKnown) look_for_mirror(M, weight, turned, found);
   found.scale = turned.scale;
   found.T_B_S = SE3(Eigen::Quaterniond(turned.R), x.tail<3>());

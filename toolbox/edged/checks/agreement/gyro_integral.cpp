@@ -17,16 +17,16 @@ void GyroIntegral::add(const ImuSample& sample) {
   if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
   if (stamps_.empty()) {
     sum_.push_back(Eigen::Vector3d::Zero());
-    turned_.push_back(Eigen::Quaterniond::Identity());
-    push_.push_back(Eigen::Vector3d::Zero());
+    attitude_.push_back(Eigen::Quaterniond::Identity());
+    velocity_.push_back(Eigen::Vector3d::Zero());
     gaps_.push_back(0);
   } else {
     const Eigen::Vector3d step = (gyro_.back() + sample.gyro_B) / 2 * to_seconds(sample.t - stamps_.back());
     sum_.push_back(sum_.back() + step);
-    const Eigen::Quaterniond before = turned_.back();
-    turned_.push_back((before * so3::exp(step)).normalized());
-    push_.push_back(push_.back() + (before * accel_.back() + turned_.back() * sample.accel_B) / 2 *
-                                       to_seconds(sample.t - stamps_.back()));
+    const Eigen::Quaterniond before = attitude_.back();
+    attitude_.push_back((before * so3::exp(step)).normalized());
+    velocity_.push_back(velocity_.back() + (before * accel_.back() + attitude_.back() * sample.accel_B) / 2 *
+                                               to_seconds(sample.t - stamps_.back()));
     gaps_.push_back(gaps_.back() + (sample.t - stamps_.back() > kLongestStep ? 1 : 0));
   }
   stamps_.push_back(sample.t);
@@ -57,24 +57,24 @@ std::optional<Eigen::Vector3d> GyroIntegral::between(Timestamp begin, Timestamp 
   return up_to(after->second, end) - up_to(after->first, begin);
 }
 
-std::optional<Eigen::Vector3d> GyroIntegral::turn_between(Timestamp begin, Timestamp end) const {
+std::optional<Eigen::Vector3d> GyroIntegral::rotation_vector(Timestamp begin, Timestamp end) const {
   const auto after = samples_after(begin, end);
   if (!after) return std::nullopt;
-  const auto up_to = [this](std::size_t i, Timestamp t) { return turned_[i - 1] * so3::exp(step_to(i, t)); };
+  const auto up_to = [this](std::size_t i, Timestamp t) { return attitude_[i - 1] * so3::exp(step_to(i, t)); };
   return so3::log(up_to(after->first, begin).inverse() * up_to(after->second, end));
 }
 
 std::optional<Eigen::Quaterniond> GyroIntegral::attitude_at(Timestamp t) const {
   const auto after = samples_after(t, t);
   if (!after) return std::nullopt;
-  return turned_[after->first - 1] * so3::exp(step_to(after->first, t));
+  return attitude_[after->first - 1] * so3::exp(step_to(after->first, t));
 }
 
-std::optional<Eigen::Vector3d> GyroIntegral::pushed_between(Timestamp begin, Timestamp end) const {
+std::optional<Eigen::Vector3d> GyroIntegral::velocity_change(Timestamp begin, Timestamp end) const {
   const auto after = samples_after(begin, end);
   if (!after) return std::nullopt;
   const auto up_to = [this](std::size_t i, Timestamp t) -> Eigen::Vector3d {
-    return push_[i - 1] + turned_[i - 1] * accel_[i - 1] * to_seconds(t - stamps_[i - 1]);
+    return velocity_[i - 1] + attitude_[i - 1] * accel_[i - 1] * to_seconds(t - stamps_[i - 1]);
   };
   return up_to(after->second, end) - up_to(after->first, begin);
 }

@@ -20,11 +20,11 @@ class GyroIntegral {
   /// the gyro. Nothing if samples are missing.
   std::optional<Eigen::Vector3d> between(Timestamp begin, Timestamp end) const;
   /// The rotation vector for any rotation: R_W_B(end) = R_W_B(begin) * Exp(result).
-  std::optional<Eigen::Vector3d> turn_between(Timestamp begin, Timestamp end) const;
+  std::optional<Eigen::Vector3d> rotation_vector(Timestamp begin, Timestamp end) const;
   /// The rotation relative to the first sample, and the integral of the specific force in those axes between two stamps
   /// [m/s]: the change of velocity plus the reaction to gravity.
   std::optional<Eigen::Quaterniond> attitude_at(Timestamp t) const;
-  std::optional<Eigen::Vector3d> pushed_between(Timestamp begin, Timestamp end) const;
+  std::optional<Eigen::Vector3d> velocity_change(Timestamp begin, Timestamp end) const;
   bool empty() const { return stamps_.empty(); }
   Timestamp first() const { return stamps_.front(); }  ///< must not be empty
   Timestamp last() const { return stamps_.back(); }
@@ -37,8 +37,8 @@ class GyroIntegral {
 
   std::vector<Timestamp> stamps_;
   std::vector<int> gaps_;  ///< up to each sample
-  std::vector<Eigen::Vector3d> gyro_, sum_, accel_, push_;
-  std::vector<Eigen::Quaterniond> turned_;  ///< since the first sample
+  std::vector<Eigen::Vector3d> gyro_, sum_, accel_, velocity_;
+  std::vector<Eigen::Quaterniond> attitude_;  ///< since the first sample
 };
 
 }  // namespace edged

@@ -76,7 +76,7 @@ struct Predicted {
 std::optional<Predicted> predict(const Turn& turn, const GyroIntegral& gyro, const GyroMount& mount) {
   constexpr Duration kStep = std::chrono::milliseconds(1);
   const Duration shift = duration_from_seconds(mount.shift_s);
-  const auto at = [&](Duration by) { return gyro.turn_between(turn.begin + by, turn.end + by); };
+  const auto at = [&](Duration by) { return gyro.rotation_vector(turn.begin + by, turn.end + by); };
   const auto now = at(shift), before = at(shift - kStep), after = at(shift + kStep);
   if (!now || !before || !after) return std::nullopt;
   const double dt = to_seconds(turn.end - turn.begin);
@@ -180,7 +180,7 @@ void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spr
 
 }  // namespace
 
-Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
+Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
   constexpr double kSpread = 1e-3;  // [rad]
   constexpr double kAgree = 0.6;    // least share of agreeing corners minus contradicting ones: points lie in front
   const Eigen::Vector3d t = direction_of(turn, R_begin_end, kSpread);

@@ -31,7 +31,7 @@ struct RayFit {
 
 /// The unit direction of the translation during a rotation, in the camera axes at its begin. R: rotation from end to
 /// begin. Zero if the corners do not determine it.
-Eigen::Vector3d way_of(const Turn& turn, const Eigen::Matrix3d& R_begin_end);
+Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end);
 
 /// The mount with the smallest epipolar error of all corners, for any translation in each rotation (Gauss-Newton on the
 /// cost of Kneip and Lynen, ICCV 2013, summed over all rotations). With a narrow view or a flat scene, one pair of

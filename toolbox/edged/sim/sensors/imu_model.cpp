@@ -9,18 +9,18 @@
 namespace edged {
 namespace {
 
-constexpr double kHumWidth_hz = 6.0;
+constexpr double kBandwidth_hz = 6.0;
 constexpr double kSpinUp_s = 0.4;
 
-std::array<Hum, 12> make_hums(const ImuModelConfig& config) {
-  const Hum one(config.vibration_hz, config.rate_hz), twice(2.0 * config.vibration_hz, config.rate_hz);
+std::array<NarrowbandNoise, 12> make_vibrations(const ImuModelConfig& config) {
+  const NarrowbandNoise one(config.vibration_hz, config.rate_hz), twice(2.0 * config.vibration_hz, config.rate_hz);
   return {one, one, one, one, one, one, twice, twice, twice, twice, twice, twice};
 }
 
 }  // namespace
 
-Hum::Hum(double hz, double rate_hz) {
-  const double radius = std::exp(-std::numbers::pi * kHumWidth_hz / rate_hz);
+NarrowbandNoise::NarrowbandNoise(double hz, double rate_hz) {
+  const double radius = std::exp(-std::numbers::pi * kBandwidth_hz / rate_hz);
   a_1_ = 2.0 * radius * std::cos(2.0 * std::numbers::pi * hz / rate_hz);
   a_2_ = radius * radius;
   // Variance of x_k = a_1 x_(k-1) - a_2 x_(k-2) + e for unit variance of e.
@@ -28,7 +28,7 @@ Hum::Hum(double hz, double rate_hz) {
   drive_ = 1.0 / std::sqrt(variance);
 }
 
-double Hum::next(Random& random) {
+double NarrowbandNoise::next(Random& random) {
   const double x = a_1_ * last_ - a_2_ * before_ + drive_ * random.normal();
   before_ = last_, last_ = x;
   return x;
@@ -68,7 +68,7 @@ ImuNoise ImuModelConfig::noise() const {
 }
 
 ImuModel::ImuModel(const ImuModelConfig& config, std::uint64_t seed)
-    : config_(config), random_(seed, 5), vibration_(seed, 8), hums_(make_hums(config)) {
+    : config_(config), random_(seed, 5), vibration_(seed, 8), vibrations_(make_vibrations(config)) {
   bias_gyro_ = config.gyro_bias * random_.normal3().normalized();
   bias_accel_ = config.accel_bias * random_.normal3().normalized();
   Random axes(seed, 10);
@@ -106,8 +106,8 @@ void ImuModel::shake(ImuSample& sample) {
   const double root_rate = std::sqrt(config_.rate_hz);
   for (int i = 0; i < 3; ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
-    const double gyro = hums_[k].next(vibration_) + 0.5 * hums_[k + 6].next(vibration_);
-    const double accel = hums_[k + 3].next(vibration_) + 0.5 * hums_[k + 9].next(vibration_);
+    const double gyro = vibrations_[k].next(vibration_) + 0.5 * vibrations_[k + 6].next(vibration_);
+    const double accel = vibrations_[k + 3].next(vibration_) + 0.5 * vibrations_[k + 9].next(vibration_);
     sample.gyro_B[i] +=
         level * (config_.gyro_vibration * gyro + config_.gyro_broadband * root_rate * vibration_.normal());
     sample.accel_B[i] +=

@@ -16,9 +16,9 @@
 namespace edged {
 
 /// Noise around one frequency: white noise through a resonator of 6 Hz, of unit variance.
-class Hum {
+class NarrowbandNoise {
  public:
-  Hum(double hz, double rate_hz);
+  NarrowbandNoise(double hz, double rate_hz);
   double next(Random& random);
 
  private:
@@ -43,7 +43,7 @@ class ImuModel {
 
   ImuModelConfig config_;
   Random random_, vibration_;
-  std::array<Hum, 12> hums_;  // gyroscope, accelerometer; one and twice the frequency
+  std::array<NarrowbandNoise, 12> vibrations_;  // gyroscope, accelerometer; one and twice the frequency
   Eigen::Vector3d bias_gyro_, bias_accel_;
   Eigen::Matrix3d gyro_axes_, accel_axes_;  // measurement matrix: scale and axis errors
 };
