@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """What the benchmarks share: recordings made once, runs of the program, what counts as a failure, and the progress bar."""
+import argparse
 import concurrent.futures
 import csv
 import datetime
@@ -49,19 +50,40 @@ def call(command, accepted=(0,)):
     return done.stdout
 
 
-def add_program_option(parser):
+def new_parser(doc, cache=None, data=False, modes=MODES, settings=True, out=None, jobs=1, jobs_of="runs"):
+    """The options that benchmarks share. cache: the name of its folder; out: what --out is where it is not given, None: there is no
+    --out; jobs: how many at a time, 0: one a core, None: there is no --jobs."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--edged", default=DEFAULT_PROGRAM, type=pathlib.Path,
                         help="the program [$EDGED, or build/release/bin/edged]")
-
-
-def add_data_option(parser):
-    parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("EDGED_DATA", ROOT / "../shared/data"),
-                        help="folder that holds mirror/ and euroc_mh01/ [$EDGED_DATA, or ../shared/data]")
+    if data:
+        parser.add_argument("--data", type=pathlib.Path, default=os.environ.get("EDGED_DATA", ROOT / "../shared/data"),
+                            help="folder that holds mirror/ and euroc_mh01/ [$EDGED_DATA, or ../shared/data]")
+    if cache:
+        parser.add_argument("--cache", default=CACHE / cache, type=pathlib.Path, help=f"recordings and run folders [build/{cache}]")
+    if out is not None:
+        parser.add_argument("--out", type=pathlib.Path,
+                            help="file for the tables: .md, and .html beside it, or .html alone" + (f" [{out}]" if out else ""))
+    if modes:
+        parser.add_argument("--modes", nargs="+", default=modes, choices=MODES, metavar="MODE", help=f"[{' '.join(modes)}]")
+    if settings:
+        parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="option of the odometry; may be repeated")
+    if jobs is not None:
+        parser.add_argument("--jobs", type=int, default=jobs or os.cpu_count(),
+                            help=f"{jobs_of} at a time [{jobs or 'one a core'}]")
+    return parser
 
 
 def check_program(edged):
     if not edged.is_file():
         sys.exit(f"{edged}: no such program; build it, or give --edged")
+
+
+def begin(options, *chosen):
+    """Checks the program and makes the folder options.runs, for runs of this build of it with these options."""
+    check_program(options.edged)
+    options.runs = options.cache / f"runs_{build_id(options.edged, *chosen)}"
+    options.runs.mkdir(parents=True, exist_ok=True)
 
 
 def measured(edged):
@@ -273,3 +295,10 @@ def write_table(file, text):
     if file.suffix != ".html":
         file.write_text(text)
     file.with_suffix(".html").write_text(page.page(text))
+
+
+def put(options, text, default=None):
+    """Prints a report, and writes it into the file of --out."""
+    print(text, end="")
+    if options.out or default:
+        write_table(options.out or default, text)

@@ -17,9 +17,9 @@ namespace edged {
 
 /// A corner as it was seen in one image.
 struct Observation {
-  Timestamp t;            ///< of the packet, on the IMU clock
-  Eigen::Vector2d pixel;  ///< of the image that the tracker was given
-  Eigen::Vector2d point;  ///< the same on the unit plane
+  Timestamp t;            ///< time of the packet, on the IMU clock
+  Eigen::Vector2d pixel;  ///< place in the image that the tracker was given
+  Eigen::Vector2d point;  ///< place on the unit plane
   bool tracking;          ///< the odometry had an estimate
 };
 
