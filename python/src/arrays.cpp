@@ -41,7 +41,7 @@ std::size_t place(Member T::*member) {
                                   reinterpret_cast<const char*>(&example));
 }
 
-/// As an event lies in memory, whatever the byte of its polarity holds.
+/// Layout of an event in memory, whatever the byte of its polarity holds.
 struct RawEvent {
   std::int64_t t;
   std::uint16_t x, y;
@@ -49,7 +49,7 @@ struct RawEvent {
 };
 static_assert(sizeof(RawEvent) == sizeof(Event) && offsetof(RawEvent, p) == offsetof(Event, positive));
 
-/// As poses lie in memory.
+/// Layout of a pose in memory.
 struct PoseRow {
   std::int64_t t;
   double position[3], quaternion[4];

@@ -45,7 +45,7 @@ void check_events(const py::array& events);
 void check_imu(const py::array& samples);
 void check_image(const py::array& image);
 
-/// Of arrays that have been checked; without the GIL.
+/// Elements of arrays that have been checked; without the GIL.
 std::vector<Event> copy_events(const void* data, std::size_t size);
 ImuSample imu_sample(const void* data, std::size_t i);
 

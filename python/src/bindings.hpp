@@ -56,7 +56,7 @@ struct PyOdometry {
   PyOdometry(const Calibration& calibration, Mode mode, const OdometryConfig& config, const SensorDelays& delays);
   /// Throws InputError if the calibration has no camera of that name and kind; one that the mode leaves out is fine.
   void check_camera(const std::string& name, Modality modality) const;
-  const Rig rig;  ///< of the calibration
+  const Rig rig;  ///< cameras of the calibration
   std::mutex mutex;
   Odometry odometry;
 };
@@ -66,7 +66,7 @@ struct PyRecording {
   std::mutex mutex;
   std::unique_ptr<Dataset> dataset;
   std::optional<Calibration> calibration;
-  std::vector<std::string> cameras;  ///< of a run, where they are not the first of each kind
+  std::vector<std::string> cameras;  ///< names, where a run does not use the first of each kind
 };
 
 OdometryConfig with_options(const OptionValues& options);

@@ -94,18 +94,20 @@ void bind_external(py::class_<PyOdometry>& odometry) {
   }
 }
 
-std::optional<Step> next_step(PyOdometry& self) {
-  return guarded(self.mutex, [&] { return self.odometry.next(); });
+/// One of the single-threaded calls of the odometry.
+template <auto Call>
+auto call(PyOdometry& self) {
+  return guarded(self.mutex, [&] { return (self.odometry.*Call)(); });
 }
 
 Step next_step_or_stop(PyOdometry& self) {
-  std::optional<Step> step = next_step(self);
+  std::optional<Step> step = call<&Odometry::next>(self);
   if (!step) throw py::stop_iteration();
   return std::move(*step);
 }
 
 std::map<std::string, std::size_t> counters(PyOdometry& self) {
-  const auto [in, out, external] = guarded(self.mutex, [&] { return self.odometry.counters(); });
+  const auto [in, out, external] = call<&Odometry::counters>(self);
   std::map<std::string, std::size_t> counters{{"unknown_camera", in.unknown_camera},
                                               {"unused_camera", in.unused_camera},
                                               {"absurd_stamps", in.absurd_stamps},
@@ -137,26 +139,14 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
   return counters;
 }
 
-py::dict rig(PyOdometry& self) {
-  return cameras(guarded(self.mutex, [&] { return self.odometry.rig(); }));
-}
-
 void load_map(PyOdometry& self, const py::bytes& map) {
   const std::string bytes = map;
   guarded(self.mutex, [&] { self.odometry.load_map(bytes); });
 }
 
 std::optional<py::bytes> save_map(PyOdometry& self) {
-  const std::optional<std::string> bytes = guarded(self.mutex, [&] { return self.odometry.save_map(); });
+  const std::optional<std::string> bytes = call<&Odometry::save_map>(self);
   return bytes ? std::optional(py::bytes(*bytes)) : std::nullopt;
-}
-
-bool awaiting_relocalization(PyOdometry& self) {
-  return guarded(self.mutex, [&] { return self.odometry.awaiting_relocalization(); });
-}
-
-FinalTrajectory final_trajectory(PyOdometry& self) {
-  return guarded(self.mutex, [&] { return self.odometry.final_trajectory(); });
 }
 
 Trajectory keyframe_poses(const FinalTrajectory& known) {
@@ -230,7 +220,7 @@ void bind_odometry(py::module_& module) {
           py::arg("measurement"), Free())
       .def(
           "finish", [](PyOdometry& self) { self.odometry.finish(); }, Free())
-      .def("next", &next_step)
+      .def("next", &call<&Odometry::next>)
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &next_step_or_stop)
       .def(
@@ -240,15 +230,14 @@ void bind_odometry(py::module_& module) {
           Free())
       .def("load_map", &load_map, py::arg("map"))
       .def("save_map", &save_map)
-      .def_property_readonly("awaiting_relocalization", &awaiting_relocalization)
-      .def("final_trajectory", &final_trajectory)
-      .def_property_readonly("rig", &rig)
+      .def_property_readonly("awaiting_relocalization", &call<&Odometry::awaiting_relocalization>)
+      .def("final_trajectory", &call<&Odometry::final_trajectory>)
+      .def_property_readonly("rig", [](PyOdometry& self) { return cameras(call<&Odometry::rig>(self)); })
       .def_property_readonly("counters", &counters)
       .def_property_readonly("timings", &timings)
       .def("__repr__", [](PyOdometry& self) {
         std::vector<std::string> names;
-        for (const RigCamera& camera : guarded(self.mutex, [&] { return self.odometry.rig(); }).cameras)
-          names.push_back(camera.name);
+        for (const RigCamera& camera : call<&Odometry::rig>(self).cameras) names.push_back(camera.name);
         return fmt::format("<edged.Odometry of {}>", fmt::join(names, ", "));
       });
 }

@@ -31,10 +31,17 @@ std::string step_text(const Step& step) {
   return head + fmt::format(" ({:.3f}, {:.3f}, {:.3f}) m>", p.x(), p.y(), p.z());
 }
 
-template <typename Part>
-std::optional<Eigen::Matrix3d> covariance(const Step& step, Part part) {
-  if (!step.covariance) return std::nullopt;
-  return (*step.covariance).*part;
+void add_covariance(py::class_<Step>& bound, const char* name, Eigen::Matrix3d StateCovariance::*part) {
+  bound.def_property_readonly(name, [part](const Step& step) {
+    return step.covariance ? std::optional<Eigen::Matrix3d>((*step.covariance).*part) : std::nullopt;
+  });
+}
+
+/// A view that keeps its owner alive.
+template <typename Class, typename T>
+void add_array(py::class_<Class>& bound, const char* name, std::vector<T> Class::*items) {
+  bound.def_property_readonly(name,
+                              [items](const py::object& self) { return view(self.cast<const Class&>().*items, self); });
 }
 
 /// The value for a camera that the run does not have.
@@ -50,15 +57,13 @@ py::object picture(const cv::Mat& image, const py::object& owner) {
 
 void bind_camera(py::module_& module) {
   py::class_<CameraStep> camera(module, "CameraStep");
+  add_array(camera, "tracks", &CameraStep::tracks);
+  add_array(camera, "events", &CameraStep::events);
   camera.def_readonly("name", &CameraStep::name)
       .def_property_readonly("modality",
                              [](const CameraStep& c) { return c.modality == Modality::Events ? "events" : "frames"; })
       .def_property_readonly("image",
                              [](const py::object& self) { return picture(self.cast<const CameraStep&>().image, self); })
-      .def_property_readonly("tracks",
-                             [](const py::object& self) { return view(self.cast<const CameraStep&>().tracks, self); })
-      .def_property_readonly("events",
-                             [](const py::object& self) { return view(self.cast<const CameraStep&>().events, self); })
       .def_readonly("survival_rate", &CameraStep::survival_rate)
       .def_readonly("rendered", &CameraStep::rendered)
       .def_readonly("event_rate_hz", &CameraStep::event_rate_hz)
@@ -75,7 +80,7 @@ py::dict cameras_of(const py::object& self) {
   return cameras;
 }
 
-/// Those of the first camera of a kind have names of their own: most runs have one of each.
+/// Values of the first camera of a kind have names of their own: most runs have one of each.
 void bind_first_cameras(py::class_<Step>& bound) {
   const auto add = [&](const char* name, Modality modality, auto value) {
     bound.def_property_readonly(
@@ -124,15 +129,13 @@ void bind_step(py::module_& module) {
   py::class_<Step> step(module, "Step");
   bind_state(step, [](const Step& s) -> const NavState& { return s.state; });
   bind_first_cameras(step);
+  add_covariance(step, "position_covariance", &StateCovariance::position);
+  add_covariance(step, "rotation_covariance", &StateCovariance::rotation);
+  add_covariance(step, "velocity_covariance", &StateCovariance::velocity);
+  add_array(step, "landmarks", &Step::landmarks);
   step.def_readonly("t", &Step::t)
       .def_readonly("status", &Step::status)
       .def_property_readonly("is_tracking", [](const Step& s) { return is_tracking(s.status); })
-      .def_property_readonly("position_covariance",
-                             [](const Step& s) { return covariance(s, &StateCovariance::position); })
-      .def_property_readonly("rotation_covariance",
-                             [](const Step& s) { return covariance(s, &StateCovariance::rotation); })
-      .def_property_readonly("velocity_covariance",
-                             [](const Step& s) { return covariance(s, &StateCovariance::velocity); })
       .def_property_readonly("attitude",
                              [](const Step& s) -> std::optional<Eigen::Vector4d> {
                                if (!s.attitude) return std::nullopt;
@@ -146,8 +149,6 @@ void bind_step(py::module_& module) {
       .def_readonly("lost_because", &Step::lost_because)
       .def_readonly("contradicted", &Step::contradicted)
       .def_property_readonly("cameras", &cameras_of)
-      .def_property_readonly("landmarks",
-                             [](const py::object& self) { return view(self.cast<const Step&>().landmarks, self); })
       .def_readonly("scene_depth", &Step::scene_depth)
       .def("__repr__", &step_text);
 }
