@@ -19,7 +19,7 @@ class ArrivalClock {
   Duration at(Timestamp t) const { return t.time_since_epoch() + std::min(least_, least_before_); }
 
  private:
-  Timestamp newest_ = Timestamp::min(), begin_ = Timestamp::min();  ///< of the span of least_
+  Timestamp newest_ = Timestamp::min(), begin_ = Timestamp::min();  ///< of all stamps; of the span of least_
   Duration least_ = Duration::max(), least_before_ = Duration::max();
 };
 

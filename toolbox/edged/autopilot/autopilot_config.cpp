@@ -18,7 +18,7 @@ constexpr std::string_view kAxesKey = "autopilot.axes";
 
 struct Direction {
   std::string_view name;
-  int row;  ///< of forward, left, up
+  int row;  ///< 0 forward, 1 left, 2 up
   double sign;
 };
 constexpr std::array<Direction, 6> kDirections = {

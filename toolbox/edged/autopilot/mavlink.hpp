@@ -30,8 +30,8 @@ struct MavlinkIds {
   std::uint8_t system = 1, component = 197;
 };
 
-/// Of a TIMESYNC message [ns]: tc1 is 0 in a request; the reply has the time of the one who replies there, and ts1 as
-/// it came.
+/// Fields of a TIMESYNC message [ns]: tc1 is 0 in a request; the reply has the time of the one who replies there, and
+/// ts1 as it came.
 struct MavlinkTimesync {
   std::int64_t tc1 = 0, ts1 = 0;
   MavlinkIds from;
@@ -44,7 +44,7 @@ class MavlinkEncoder {
 
   /// Stamped with timestamp_sample. Pose in LOCAL_FRD, velocities in BODY_FRD, the only pair that ArduPilot accepts.
   MavlinkFrame odometry(const VehicleOdometry& odometry);
-  /// Of an onboard controller that is no autopilot.
+  /// The heartbeat of an onboard controller that is no autopilot.
   MavlinkFrame heartbeat();
   /// The reply to a request, at time now_ns of the clock that ODOMETRY is stamped with.
   MavlinkFrame timesync(const MavlinkTimesync& request, std::int64_t now_ns);

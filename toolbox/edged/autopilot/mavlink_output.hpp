@@ -18,7 +18,7 @@ namespace edged {
 
 struct MavlinkCounters {
   std::size_t odometry = 0;    ///< messages sent
-  std::size_t heartbeats = 0;  ///< the same
+  std::size_t heartbeats = 0;  ///< messages sent
   std::size_t timesyncs = 0;   ///< requests answered
   std::size_t dropped = 0;     ///< messages of all kinds that the line did not take
 };

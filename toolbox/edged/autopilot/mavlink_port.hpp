@@ -46,7 +46,7 @@ class MavlinkPort {
   bool serial_ = false, listens_ = false;
   sockaddr_storage peer_{};
   socklen_t peer_size_ = 0;         ///< 0: nobody has sent
-  std::vector<std::uint8_t> rest_;  ///< of a frame of which the device has taken a part
+  std::vector<std::uint8_t> rest_;  ///< bytes of a frame of which the device has taken a part
   std::string failure_;
 };
 

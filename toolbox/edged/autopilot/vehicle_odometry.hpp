@@ -16,10 +16,10 @@ struct VehicleOdometry {
 
   std::uint64_t timestamp = 0, timestamp_sample = 0;  ///< [us], of the IMU sample
   std::uint8_t pose_frame = kPoseFrameFrd;
-  std::array<float, 3> position{};  ///< of the IMU in the world [m]
+  std::array<float, 3> position{};  ///< place of the IMU in the world [m]
   std::array<float, 4> q{};         ///< w, x, y, z: from V to the world
   std::uint8_t velocity_frame = kVelocityFrameBodyFrd;
-  std::array<float, 3> velocity{};              ///< of the IMU, in V [m/s]
+  std::array<float, 3> velocity{};              ///< velocity of the IMU, in V [m/s]
   std::array<float, 3> angular_velocity{};      ///< in V [rad/s], without the bias of the gyro
   std::array<float, 3> position_variance{};     ///< along the axes of the world [m^2]
   std::array<float, 3> orientation_variance{};  ///< about the axes of V [rad^2]

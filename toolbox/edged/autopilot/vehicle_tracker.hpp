@@ -32,7 +32,7 @@ class VehicleTracker {
   std::optional<VehicleOdometry> at(const NavState& state, const Eigen::Vector3d& gyro_B) const;
 
  private:
-  /// Of the newest step with a pose.
+  /// What is kept of the newest step with a pose.
   struct Newest {
     Timestamp t;
     SE3 T_M_O;
