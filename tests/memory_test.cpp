@@ -137,7 +137,7 @@ TEST(EventStorm, OfTwentyMillionASecondIsSurvivedLiveWithinTheBoundsOfTheQueue) 
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, Mode::Fused, {}, {kInOrder, Inference::OwnThread});
   LiveSource source(storm, {.max_megabytes = 16}, [] { return false; });
   std::size_t events = 0, frames = 0, imu = 0, packets = 0;
-  while (source.shed().events == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  while (source.dropped().events == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto next_measurement = [&] {
     const std::optional<Measurement> m = source.next();
     if (!m) return m;
@@ -153,10 +153,10 @@ TEST(EventStorm, OfTwentyMillionASecondIsSurvivedLiveWithinTheBoundsOfTheQueue) 
   });
   std::printf("%zu packets, %zu of %zu events, %zu of %zu frames, %.0f MB more, latency 99 %% %.3f s\n", packets,
               events, storm.events(), frames, storm.frames(), most_mb - before_mb, source.latency().quantile_s(0.99));
-  EXPECT_EQ(events + source.shed().events, storm.events());
-  EXPECT_EQ(frames + source.shed().frames, storm.frames());
+  EXPECT_EQ(events + source.dropped().events, storm.events());
+  EXPECT_EQ(frames + source.dropped().frames, storm.frames());
   EXPECT_EQ(imu, storm.imu_samples());
-  EXPECT_GT(source.shed().events, 0U);
+  EXPECT_GT(source.dropped().events, 0U);
   EXPECT_GT(packets, 10U);
   EXPECT_LE(source.peaks().bytes, std::size_t{16} << 20U);
   EXPECT_LT(most_mb - before_mb, 300.0);

@@ -47,7 +47,7 @@ void RunReader::stop() {
 
 std::optional<LiveSummary> RunReader::live_summary(const OdometryCounters& counters) const {
   if (!live_) return std::nullopt;
-  return LiveSummary{live_->latency(), live_->shed(), counters.packets.packets_overflow, live_->peaks(),
+  return LiveSummary{live_->latency(), live_->dropped(), counters.packets.packets_overflow, live_->peaks(),
                      run_.config.live.max_age_s};
 }
 

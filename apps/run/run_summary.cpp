@@ -160,18 +160,19 @@ void add_depth_scale(Figures& out, const std::optional<LogScale>& ln_s) {
 
 Json live_json(const LiveSummary& live) {
   const QueuePeaks& peaks = live.peaks;
-  return {{"latency_s",
-           {{"p50", live.latency.quantile_s(0.50)},
-            {"p95", live.latency.quantile_s(0.95)},
-            {"p99", live.latency.quantile_s(0.99)},
-            {"max", live.latency.max_s()}}},
-          {"shed", {{"events", live.shed.events}, {"frames", live.shed.frames}, {"packets", live.shed_packets}}},
-          {"queue_peak",
-           {{"events", peaks.events},
-            {"frames", peaks.frames},
-            {"imu_samples", peaks.imu},
-            {"bytes", peaks.bytes},
-            {"age_s", peaks.age_s}}}};
+  return {
+      {"latency_s",
+       {{"p50", live.latency.quantile_s(0.50)},
+        {"p95", live.latency.quantile_s(0.95)},
+        {"p99", live.latency.quantile_s(0.99)},
+        {"max", live.latency.max_s()}}},
+      {"shed", {{"events", live.dropped.events}, {"frames", live.dropped.frames}, {"packets", live.dropped_packets}}},
+      {"queue_peak",
+       {{"events", peaks.events},
+        {"frames", peaks.frames},
+        {"imu_samples", peaks.imu},
+        {"bytes", peaks.bytes},
+        {"age_s", peaks.age_s}}}};
 }
 
 void add_live(Figures& out, const LiveSummary& live) {
@@ -180,9 +181,10 @@ void add_live(Figures& out, const LiveSummary& live) {
   out.line("latency", fmt::format("{:.1f} ms", 1e3 * latency.quantile_s(0.50)),
            fmt::format("median; 95 % {:.1f} ms, 99 % {:.1f} ms, worst {:.1f} ms", 1e3 * latency.quantile_s(0.95),
                        1e3 * latency.quantile_s(0.99), 1e3 * latency.max_s()));
-  if (live.shed == ShedCounters{} && live.shed_packets == 0) return out.line("left out", "nothing");
-  out.line("left out", quantity(live.shed.events, "event"),
-           fmt::format("{}, {}: too slow", quantity(live.shed.frames, "frame"), quantity(live.shed_packets, "packet")));
+  if (live.dropped == DropCounters{} && live.dropped_packets == 0) return out.line("left out", "nothing");
+  out.line("left out", quantity(live.dropped.events, "event"),
+           fmt::format("{}, {}: too slow", quantity(live.dropped.frames, "frame"),
+                       quantity(live.dropped_packets, "packet")));
 }
 
 /// Repairs, what could not be written, and the verdict: the end of the table.

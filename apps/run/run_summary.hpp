@@ -56,9 +56,9 @@ struct RunResources {
 
 /// Latency and drops of a live run.
 struct LiveSummary {
-  StageTiming latency;           ///< from when a measurement was due to its result
-  ShedCounters shed;             ///< by the queue before the packetizer
-  std::size_t shed_packets = 0;  ///< by the packetizer, while the IMU stayed away
+  StageTiming latency;              ///< from when a measurement was due to its result
+  DropCounters dropped;             ///< by the queue before the packetizer
+  std::size_t dropped_packets = 0;  ///< by the packetizer, while the IMU stayed away
   QueuePeaks peaks;
   double max_age_s = 0.0;  ///< that was allowed to wait
 };

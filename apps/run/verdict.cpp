@@ -101,8 +101,8 @@ void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Find
 void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kSome = 0.1, kMost = 0.5, kLate = 4.0;
   const double dropped =
-      run.events() > 0 || live.shed.events > 0
-          ? static_cast<double>(live.shed.events) / static_cast<double>(live.shed.events + run.events())
+      run.events() > 0 || live.dropped.events > 0
+          ? static_cast<double>(live.dropped.events) / static_cast<double>(live.dropped.events + run.events())
           : 0.0;
   const double late_s = live.latency.quantile_s(0.50);
   const bool too_late = late_s > kLate * live.max_age_s;

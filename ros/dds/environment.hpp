@@ -18,13 +18,13 @@ struct Discovery {
   std::uint32_t domain = 0;
   DiscoveryRange range = DiscoveryRange::Subnet;
   std::vector<std::string> peers;  ///< addresses that are asked beside (ROS_STATIC_PEERS)
-  bool network = true;             ///< there is an interface beside the loopback
+  bool network = true;             ///< whether an interface beside the loopback is up
   std::string cyclone_uri;         ///< the user's own configuration (CYCLONEDDS_URI), which has the last word
 };
 
 /// The value of a variable; nothing if it is not set.
 using Environment = std::function<std::optional<std::string>(const char*)>;
-std::optional<std::string> variable(const char* name);  ///< of this process
+std::optional<std::string> variable(const char* name);  ///< by the environment of this process
 
 /// ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS (ignored with a warning where the range is Off or
 /// SystemDefault), ROS_LOCALHOST_ONLY (of Humble; where it is 1 it wins) and CYCLONEDDS_URI. Throws InputError that

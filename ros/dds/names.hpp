@@ -14,7 +14,7 @@ namespace edged::ros2 {
 /// A message type that is written or read.
 struct MessageType {
   std::string_view name;  ///< "sensor_msgs/Imu", as the readers of bags have it
-  std::string_view hash;  ///< of its definition (REP-2016), in hex
+  std::string_view hash;  ///< hash of its definition (REP-2016), in hex
 };
 std::span<const MessageType> message_types();
 

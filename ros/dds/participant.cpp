@@ -31,22 +31,15 @@ QosHandle endpoint_qos(const Qos& wanted, std::string_view type) {
   return qos;
 }
 
-/// The policies that readers ask for and writers offer.
+/// A policy that readers ask for and writers offer.
 std::string policy_name(std::uint32_t id) {
-  switch (id) {
-    case DDS_RELIABILITY_QOS_POLICY_ID:
-      return "reliability";
-    case DDS_DURABILITY_QOS_POLICY_ID:
-      return "durability";
-    case DDS_DEADLINE_QOS_POLICY_ID:
-      return "deadline";
-    case DDS_LIVELINESS_QOS_POLICY_ID:
-      return "liveliness";
-    case DDS_OWNERSHIP_QOS_POLICY_ID:
-      return "ownership";
-    default:
-      return "policy " + std::to_string(id);
-  }
+  static const std::map<std::uint32_t, const char*> kNames = {{DDS_RELIABILITY_QOS_POLICY_ID, "reliability"},
+                                                              {DDS_DURABILITY_QOS_POLICY_ID, "durability"},
+                                                              {DDS_DEADLINE_QOS_POLICY_ID, "deadline"},
+                                                              {DDS_LIVELINESS_QOS_POLICY_ID, "liveliness"},
+                                                              {DDS_OWNERSHIP_QOS_POLICY_ID, "ownership"}};
+  const auto found = kNames.find(id);
+  return found == kNames.end() ? "policy " + std::to_string(id) : found->second;
 }
 
 std::pair<Entity, const ddsi_sertype*> make_topic(const Participant& participant, const std::string& topic,

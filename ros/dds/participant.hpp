@@ -45,8 +45,8 @@ class Entity {
 struct Qos {
   bool reliable = true;
   bool latched = false;    ///< transient local: a late reader gets the last `depth` messages
-  std::size_t depth = 10;  ///< of a reader: messages beyond it are refused and counted, none is overwritten
-  /// Of a reliable writer: it waits this long for readers that do not keep up before it drops a message; 0: it
+  std::size_t depth = 10;  ///< a reader refuses and counts messages beyond it, and overwrites none
+  /// A reliable writer waits this long for readers that do not keep up before it drops a message; 0: it
   /// overwrites the oldest one beyond `depth`, uncounted.
   Duration longest_block{0};
 

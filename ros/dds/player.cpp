@@ -43,7 +43,7 @@ std::string encode_mono(std::span<const Event> events) {
 }  // namespace
 
 Player::Player(const PlaySetup& setup, WriterSetup recording)
-    : setup_(setup), recording_(std::move(recording)), participant_(setup.discovery) {
+    : setup_(setup), recording_(std::move(recording)), participant_(setup.discovery), clock_(kClockPeriod) {
   const DatasetInfo& info = recording_.info;
   const auto add_cameras = [&](Modality modality, bool has, std::string_view type) {
     for (std::size_t i = 0; has && i < recording_.cameras(modality); ++i) {
@@ -164,8 +164,7 @@ void Player::send_packet(EventStream& stream, const std::string& topic, const st
 }
 
 void Player::send_clock(Timestamp t) {
-  if (clock_ && t >= *clock_ && t - *clock_ < kClockPeriod) return;
-  clock_ = t;
+  if (!clock_.begins(t)) return;
   WireWriter out(Wire::Cdr);
   out.time(t);
   send(kClock, out.message());

@@ -15,6 +15,7 @@
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
 #include "edged/io/core/recording_writer.hpp"
+#include "node/outputs/period.hpp"
 
 namespace edged::ros2 {
 
@@ -22,7 +23,7 @@ struct PlaySetup {
   Discovery discovery;
   std::optional<Names> names;
   double rate = 1.0;         ///< seconds of the recording per second
-  bool best_effort = false;  ///< as most drivers offer; otherwise subscribers that ask for it get all
+  bool best_effort = false;  ///< what most drivers offer; otherwise subscribers that ask for it get all
 };
 
 struct PlayCounters {
@@ -68,7 +69,7 @@ class Player {
   Participant participant_;
   std::map<std::string, Writer> writers_;       ///< by the name before remapping
   std::map<std::string, EventStream> streams_;  ///< by topic
-  std::optional<Timestamp> clock_;
+  node::Period clock_;                          ///< between its messages
   PlayCounters counters_;
 };
 

@@ -42,7 +42,8 @@ void pad(std::string& bytes) { bytes.append((kAlignment - bytes.size() % kAlignm
 // RTPS 2.2, 8.3.3, 9.4.4 and 9.4.5.3 [bytes]: in the packet, and in the submessage DATA or DATA_FRAG.
 constexpr std::size_t kPrefix = 8, kPrefixSize = 12, kWriterId = 12, kWriterIdSize = 4, kNumber = 16;
 
-/// Of the submessage that the fragment is from. Cyclone has brought its number into the order of bytes of this machine.
+/// The origin of the submessage that the fragment is from. Cyclone has brought its number into the order of bytes of
+/// this machine.
 Origin origin_of(const nn_rdata& fragment) {
   if (fragment.submsg_zoff == 0) return {};
   const unsigned char* packet = NN_RMSG_PAYLOAD(fragment.rmsg);

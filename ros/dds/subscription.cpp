@@ -31,7 +31,7 @@ void Subscription::stop() {
   thread_.join();
 }
 
-/// As long as it holds messages.
+/// Wakes the thread as long as the reader holds messages.
 void Subscription::wake_for(dds_entity_t reader) {
   const dds_entity_t condition = dds_create_readcondition(reader, DDS_ANY_STATE);  // deleted with the reader
   dds_waitset_attach(waitset_.handle(), condition, 0);

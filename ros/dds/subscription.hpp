@@ -22,7 +22,7 @@ class Subscription {
     Qos qos = {};
     std::function<bool(const std::string& type)> accepts = {};  ///< "sensor_msgs/Imu"
     std::function<void(const std::string& type, ByteSpan cdr)> receive = {};
-    std::function<void()> on_reader = [] {};  ///< there is a new one
+    std::function<void()> on_reader = [] {};  ///< called when a reader has been made
   };
   Subscription(const Participant& participant, Setup setup);
   ~Subscription() { stop(); }

@@ -32,7 +32,7 @@ class ClockCheck {
   };
   const std::string reference_;
   mutable std::mutex mutex_;
-  std::optional<Timestamp> newest_;  ///< of the reference
+  std::optional<Timestamp> newest_;  ///< stamp of the reference
   std::map<std::string, Pair> topics_;
 };
 

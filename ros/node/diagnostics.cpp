@@ -53,15 +53,42 @@ void add_input(Values& values, const std::string& topic, const InputCounters& in
                       fmt::format("{:.1f}", 1e3 * to_seconds(input.stamp_jitter)));
 }
 
+struct Count {
+  const char* what;
+  std::size_t n;
+  bool lost;  ///< measurements that are in no packet
+};
+
+std::vector<Count> counts_of(const NodeHealth& health) {
+  const auto& [intake, packets, use] = health.odometry;
+  return {{"topics with stamps of another speed", health.wrong_clocks, false},
+          {"events left out, too slow", health.dropped.events, true},
+          {"frames left out, too slow", health.dropped.frames, true},
+          {"of an unknown camera", intake.unknown_camera, true},
+          {"of a camera not used", intake.unused_camera, false},
+          {"absurd stamps", intake.absurd_stamps, true},
+          {"stamps far ahead", intake.far_ahead, true},
+          {"clocks set back", intake.clocks_set_back, true},
+          {"events outside the image", intake.events_outside, true},
+          {"frames unfit", intake.frames_unfit, true},
+          {"no room", intake.no_room, true},
+          {"packets", packets.packets, false},
+          {"packets before the IMU", packets.packets_before_imu, false},
+          {"packets after the IMU", packets.packets_after_imu, false},
+          {"packets dropped, IMU away too long", packets.packets_overflow, true},
+          {"events late", packets.events_late, true},
+          {"events of flickering lamps", packets.events_flicker, false},
+          {"events of dropped packets", packets.events_lost, false},
+          {"frames late", packets.frames_late, true},
+          {"IMU samples not finite", packets.imu_not_finite, true},
+          {"IMU samples late", packets.imu_late, true}};
+}
+
 }  // namespace
 
 std::size_t lost_measurements(const NodeHealth& health) {
-  const IntakeCounters& intake = health.odometry.intake;
-  const PacketizerCounters& packets = health.odometry.packets;
-  std::size_t lost = intake.unknown_camera + intake.absurd_stamps + intake.far_ahead + intake.clocks_set_back +
-                     intake.events_outside + intake.frames_unfit + intake.no_room + packets.packets_overflow +
-                     packets.events_late + packets.frames_late + packets.imu_not_finite + packets.imu_late +
-                     health.left_out.events + health.left_out.frames;
+  std::size_t lost = 0;
+  for (const Count& count : counts_of(health)) lost += count.lost ? count.n : 0;
   for (const auto& [topic, input] : health.inputs)  // what the transport lost is missing among the numbers, too
     lost += input.unreadable + std::max(input.missed, input.lost + input.refused);
   return lost;
@@ -70,38 +97,17 @@ std::size_t lost_measurements(const NodeHealth& health) {
 Diagnosis diagnose(const NodeHealth& health) {
   Diagnosis diagnosis{level_of(health), summary(health), {}};
   Values& values = diagnosis.values;
-  const auto count = [&](const std::string& key, std::size_t n) { add_count(values, key, n); };
   for (const auto& [topic, input] : health.inputs) add_input(values, topic, input);
   if (health.age)
     values.emplace_back("newest step behind newest measurement [s]", fmt::format("{:.3f}", to_seconds(*health.age)));
-  count("topics with stamps of another speed", health.wrong_clocks);
-  count("events left out, too slow", health.left_out.events);
-  count("frames left out, too slow", health.left_out.frames);
+  for (const Count& count : counts_of(health)) add_count(values, count.what, count.n);
   const auto& [intake, packets, use] = health.odometry;
-  count("of an unknown camera", intake.unknown_camera);
-  count("of a camera not used", intake.unused_camera);
-  count("absurd stamps", intake.absurd_stamps);
-  count("stamps far ahead", intake.far_ahead);
-  count("clocks set back", intake.clocks_set_back);
-  count("events outside the image", intake.events_outside);
-  count("frames unfit", intake.frames_unfit);
-  count("no room", intake.no_room);
-  count("packets", packets.packets);
-  count("packets before the IMU", packets.packets_before_imu);
-  count("packets after the IMU", packets.packets_after_imu);
-  count("packets dropped, IMU away too long", packets.packets_overflow);
-  count("events late", packets.events_late);
-  count("events of flickering lamps", packets.events_flicker);
-  count("events of dropped packets", packets.events_lost);
-  count("frames late", packets.frames_late);
-  count("IMU samples not finite", packets.imu_not_finite);
-  count("IMU samples late", packets.imu_late);
   for (std::size_t i = 0; i < external_sensors().size(); ++i) {
     if (packets.external[i] == 0) continue;
     const std::string name(external_sensors()[i].name);
-    count(name + " samples used", use.used[i]);
-    count(name + " samples rejected", use.rejected[i]);
-    count(name + " samples late", packets.external_late[i]);
+    add_count(values, name + " samples used", use.used[i]);
+    add_count(values, name + " samples rejected", use.rejected[i]);
+    add_count(values, name + " samples late", packets.external_late[i]);
   }
   return diagnosis;
 }

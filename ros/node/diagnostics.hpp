@@ -10,27 +10,27 @@
 #include <utility>
 #include <vector>
 
+#include "edged/live/measurement_queue.hpp"
 #include "edged/odometry.hpp"
-#include "node/backlog.hpp"
 #include "node/sensor_input.hpp"
 
 namespace edged::node {
 
 struct NodeHealth {
-  std::optional<TrackingStatus> status;         ///< of the newest step
+  std::optional<TrackingStatus> status;         ///< status of the newest step
   std::string reason;                           ///< what initialization waits for, or what ended the last estimate
   std::map<std::string, InputCounters> inputs;  ///< by topic
   OdometryCounters odometry;
-  BacklogCounters left_out;
+  DropCounters dropped;          ///< too slow for them
   std::size_t wrong_clocks = 0;  ///< topics whose stamps run at another speed
-  std::size_t newly_lost = 0;    ///< of lost_measurements, since the last report
-  std::optional<Duration> age;   ///< from the newest step to the newest measurement
+  std::size_t newly_lost = 0;    ///< rise of lost_measurements since the last report
+  std::optional<Duration> age;   ///< from the newest step to the newest IMU sample
 };
 
 /// Measurements that are in no packet: unreadable, invalid, late, dropped, without room.
 std::size_t lost_measurements(const NodeHealth& health);
 
-/// As a DiagnosticStatus has it.
+/// The content of a diagnostic_msgs/DiagnosticStatus.
 struct Diagnosis {
   enum class Level : std::uint8_t { Ok = 0, Warning = 1, Error = 2 };
   Level level = Level::Ok;

@@ -54,7 +54,7 @@ TEST(Diagnostics, EveryLossIsCountedAndShown) {
   health.inputs["/imu"].missed = 66;
   health.inputs["/imu"].lost = 64;
   health.inputs["/imu"].refused = 3;
-  health.left_out = {4, 8};
+  health.dropped = {4, 8};
   health.odometry.intake.events_outside = 16;
   health.odometry.packets.frames_late = 32;
   EXPECT_EQ(lost_measurements(health), 130U);

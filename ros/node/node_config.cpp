@@ -30,8 +30,11 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("delays.imu_s", delays.imu_s, {"s", 0, 10, "as delays.events_s"});
   fields.add("delays.external_s", delays.external_s,
              {"s", 0, 10, "height and velocity samples may lag this far behind the other sensors"});
-  fields.add("max_age_s", max_age_s,
-             {"s", 0.05, 3600, "when the odometry lags so far behind, events are left out; frames at twice that"});
+  fields.add(
+      "max_age_s", max_age_s,
+      {"s", 0.05, 3600,
+       "events that wait longer for the odometry are dropped; frames at twice that. From 8 % of it on events are "
+       "thinned, evenly over the image."});
   fields.add("path_step_s", path_step_s, {"s", 0.001, 3600, "between poses of the path"});
   fields.group("occupancy", occupancy);
   fields.add("mavlink", mavlink,

@@ -30,11 +30,11 @@ struct OccupancyGridConfig {
 struct NodeConfig {
   std::string rig;
   Mode mode = Mode::Fused;
-  std::string map_file;  ///< of `edged run --save-map`, to relocalize in; "": none
+  std::string map_file;  ///< written by `edged run --save-map`, to relocalize in; "": none
   FrameNames frames;
   bool publish_tf = true;
   SensorDelays delays;
-  double max_age_s = 0.25;
+  double max_age_s = 0.25;  ///< QueueConfig::max_age_s
   double path_step_s = 0.1;
   OccupancyGridConfig occupancy;
   std::string mavlink;       ///< URL of an autopilot, as of `edged run --mavlink`; "" without one

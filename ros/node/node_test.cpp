@@ -4,9 +4,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "edged/core/check.hpp"
+#include "edged/io/ros/bag/bag_test_support.hpp"
+#include "edged/io/ros/messages/definitions.hpp"
 #include "node/node_test_support.hpp"
 
 namespace edged::node {
@@ -47,6 +52,75 @@ TEST(Node, StopsTheTransportWhenItFails) {
   };
   EXPECT_THROW(node.run(fails), std::runtime_error);
   EXPECT_FALSE(transport.runs);
+}
+
+/// The messages of a driver of ROS 1.
+class Driver {
+ public:
+  explicit Driver(KeptTransport& transport) : transport_(transport) {}
+  void send_events(Timestamp t, int count) {
+    send("events", "dvs_msgs/EventArray", event_array_message(Wire::Ros1, bag_events(t, count, 1), kBagSensor));
+  }
+  void send_frame(Timestamp t) {
+    send("image", "sensor_msgs/Image", image_message(Wire::Ros1, {t, "", cv::Mat(180, 240, CV_8UC1, cv::Scalar(7))}));
+  }
+  void send_imu(Timestamp t) {
+    send("imu", "sensor_msgs/Imu", imu_message(Wire::Ros1, {t, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.81}}));
+  }
+
+ private:
+  void send(const std::string& topic, const std::string& type, const std::string& bytes) {
+    transport_.receivers.at(topic)({type, std::string(ros1_md5_of(type)), as_bytes(bytes)});
+  }
+  KeptTransport& transport_;
+};
+
+std::size_t count_of(const Diagnosis& diagnosis, const std::string& key) {
+  const auto found = std::ranges::find(diagnosis.values, key, &std::pair<std::string, std::string>::first);
+  return found == diagnosis.values.end() ? 0 : std::stoul(found->second);
+}
+
+NodeConfig impatient_config() {
+  NodeConfig config = davis_config();
+  config.max_age_s = 0.05;
+  return config;
+}
+
+TEST(Node, DropsEventsThenFramesNeverTheImuWhileTheOdometryIsBusy) {
+  constexpr int kEvents = 1000;
+  KeptTransport transport(Wire::Ros1);
+  Driver driver(transport);
+  Node node(impatient_config(), load_node_rig(impatient_config()), transport);
+  const Diagnosis end = node.run([&] {  // in the thread of the odometry
+    for (const double t : {100.0, 100.12}) {
+      if (t > 100.0) std::this_thread::sleep_for(std::chrono::milliseconds(120));
+      driver.send_events(timestamp_from_seconds(t), kEvents);
+      driver.send_imu(timestamp_from_seconds(t));
+      driver.send_frame(timestamp_from_seconds(t));
+    }
+    return true;
+  });
+  EXPECT_EQ(count_of(end, "events events"), 2U * kEvents);
+  EXPECT_EQ(count_of(end, "imu messages"), 2U);
+  // The first ones have waited too long; of the second events a small share is kept.
+  EXPECT_GT(count_of(end, "events left out, too slow"), 18U * kEvents / 10);
+  EXPECT_LT(count_of(end, "events left out, too slow"), 2U * kEvents);
+  EXPECT_EQ(count_of(end, "frames left out, too slow"), 1U);
+}
+
+TEST(Node, DropsNothingWhileTheOdometryWaitsForASensor) {
+  KeptTransport transport(Wire::Ros1);
+  Driver driver(transport);
+  Node node(impatient_config(), load_node_rig(impatient_config()), transport);
+  int sent = 0;
+  const Diagnosis end = node.run([&] {
+    const Timestamp t = timestamp_from_seconds(100.0 + 0.01 * sent);
+    if (sent < 50) driver.send_events(t, 100);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return ++sent > 60;
+  });
+  EXPECT_EQ(count_of(end, "events events"), 5000U);
+  EXPECT_EQ(count_of(end, "events left out, too slow"), 0U);
 }
 
 }  // namespace

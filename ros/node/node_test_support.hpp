@@ -30,16 +30,18 @@ class KeptTransport : public Transport {
     const auto found = remapped.find(topic);
     return found == remapped.end() ? topic : found->second;
   }
-  void subscribe(const std::string&, Role, Receive) override {}
+  void subscribe(const std::string& topic, Role, Receive receive) override { receivers[topic] = std::move(receive); }
   void start() override { runs = true; }
   void stop() override { runs = false; }
   bool ok() const override { return true; }
   std::map<std::string, TopicTroubles> troubles() const override { return {}; }
 
-  std::vector<std::string> topics, messages;
-  std::set<std::string> latched;            ///< topics
-  std::map<std::string, std::string> last;  ///< message of each topic
+  std::vector<std::string> topics;
+  std::map<std::string, std::size_t> counts;  ///< of messages, by topic
+  std::set<std::string> latched;              ///< topics
+  std::map<std::string, std::string> last;    ///< message of each topic
   std::map<std::string, std::string> remapped;
+  std::map<std::string, Receive> receivers;  ///< by topic
   bool runs = false;
 
  private:
@@ -48,7 +50,7 @@ class KeptTransport : public Transport {
     bool wanted() const override { return true; }
     void publish(const std::string& message) override {
       const std::lock_guard lock(transport.mutex_);
-      transport.messages.push_back(message);
+      ++transport.counts[topic];
       transport.last[topic] = message;
     }
     KeptTransport& transport;

@@ -62,8 +62,8 @@ class SensorInput {
   const std::string camera_;
   EventMessageDecoder decoder_;
   std::optional<std::uint64_t> last_number_;
-  std::optional<Timestamp> last_stamp_;  ///< of the IMU, as is:
-  std::deque<Duration> intervals_;       ///< the last ones between its stamps
+  std::optional<Timestamp> last_stamp_;  ///< newest stamp of the IMU
+  std::deque<Duration> intervals_;       ///< the newest ones between stamps of the IMU
   mutable std::mutex mutex_;             // of what is below
   InputCounters counters_;
 };

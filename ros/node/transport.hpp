@@ -17,7 +17,7 @@ namespace edged::node {
 /// A serialised message.
 struct WireMessage {
   std::string type;  ///< "sensor_msgs/Imu", also of ROS 2
-  std::string md5;   ///< of ROS 1 only
+  std::string md5;   ///< sum of its definition, in ROS 1 only
   ByteSpan bytes;
 };
 
@@ -27,7 +27,7 @@ struct Advertised {
   std::string name, type;
   std::size_t depth = 10;  ///< messages that may wait for a slow subscriber
   bool latched = false;    ///< a late subscriber gets the last `depth` messages
-  bool reliable = true;    ///< of ROS 2: what a subscriber misses is sent again
+  bool reliable = true;    ///< in ROS 2: what a subscriber misses is sent again
 };
 
 /// From one thread at a time.
@@ -65,7 +65,7 @@ class Transport {
   virtual void stop() = 0;  ///< also if start() has failed or was not called; again without effect
   /// False once ROS itself shuts the node down.
   virtual bool ok() const = 0;
-  /// Of subscribed topics, by full name.
+  /// Troubles of the subscribed topics, by full name.
   virtual std::map<std::string, TopicTroubles> troubles() const = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace edged::ros1 {
 namespace {
 
-constexpr std::uint32_t kNoLimit = 0;  // excess measurements are dropped and counted by the backlog or the odometry
+constexpr std::uint32_t kNoLimit = 0;  // excess measurements are dropped and counted by the node
 constexpr unsigned kThreads = 3;       // one for each sensor that every rig has
 
 using AnyMessage = topic_tools::ShapeShifter;

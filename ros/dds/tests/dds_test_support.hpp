@@ -17,7 +17,7 @@
 
 namespace edged::ros2 {
 
-/// Of this process, on this machine only.
+/// A domain of this process, on this machine only.
 inline Discovery test_discovery() {
   Discovery discovery;
   discovery.domain = 1 + static_cast<std::uint32_t>(getpid()) % 100;

@@ -270,7 +270,7 @@ TEST(Ros2Endpoints, WhatHasArrivedIsReceivedBeforeTheStop) {
   EXPECT_EQ(received, 90);
 }
 
-/// The same domain by other entities: what passes between them goes over the network, which loses so many of 1000
+/// One domain by other entities: what passes between them goes over the network, which loses so many of 1000
 /// packets that these entities send.
 Discovery test_discovery_of_another_process(int lost_per_mille = 0) {
   Discovery discovery = test_discovery();

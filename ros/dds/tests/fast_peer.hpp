@@ -99,26 +99,6 @@ class Decoder {
     cdr_ >> value;
     return value;
   }
-  template <typename T, std::size_t N>
-  std::array<T, N> array() {
-    std::array<T, N> values{};
-    for (T& value : values) cdr_ >> value;
-    return values;
-  }
-  std::vector<double> doubles(std::size_t count) {
-    std::vector<double> values(count);
-    for (double& value : values) cdr_ >> value;
-    return values;
-  }
-  struct Header {
-    double stamp_s;
-    std::int64_t stamp_ns;
-    std::string frame;
-  };
-  Header header() {
-    const std::int64_t s = get<std::int32_t>(), ns = get<std::uint32_t>();
-    return {static_cast<double>(s) + 1e-9 * static_cast<double>(ns), s * 1'000'000'000 + ns, get<std::string>()};
-  }
   bool at_end() const {  // but for the padding
     return cdr_.getSerializedDataLength() + 4 > memory_.size();
   }
@@ -205,7 +185,7 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// Of the packets that it sends from now on.
+  /// Applies to the packets that it sends from now on.
   void lose(double percent) { *lost_percent_ = percent; }
 
   /// topic: "/imu"; type: "sensor_msgs::msg::dds_::Imu_".

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "dds_test_support.hpp"
-#include "node/messages.hpp"
+#include "node/outputs/messages.hpp"
 
 namespace edged::ros2 {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 
 constexpr Timestamp kOutputTime = timestamp_from_ns(1'700'000'000'123'456'789);
-const node::FrameNames kNames{"odom", "body"};
+const node::Format kFormat{};  // of ROS 2, frames odom and body
 
 node::Estimate some_estimate() {
   node::Estimate estimate;
@@ -49,7 +49,7 @@ class Ros2Outputs : public ::testing::Test {
 
 TEST_F(Ros2Outputs, Odometry) {
   TypedPeer<nav_msgs_msg_dds__Odometry_> peer("/out", nav_msgs_msg_dds__Odometry__desc);
-  const auto* odometry = passed(peer, "nav_msgs/Odometry", node::odometry_message(Wire::Cdr, some_estimate(), kNames));
+  const auto* odometry = passed(peer, "nav_msgs/Odometry", node::odometry_message(kFormat, some_estimate()));
   ASSERT_TRUE(odometry);
   expect_header(odometry->header, "odom");
   EXPECT_STREQ(odometry->child_frame_id, "body");
@@ -66,7 +66,7 @@ TEST_F(Ros2Outputs, PoseWithCovariance) {
   TypedPeer<geometry_msgs_msg_dds__PoseWithCovarianceStamped_> peer(
       "/out", geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc);
   const auto* pose =
-      passed(peer, "geometry_msgs/PoseWithCovarianceStamped", node::pose_message(Wire::Cdr, some_estimate(), kNames));
+      passed(peer, "geometry_msgs/PoseWithCovarianceStamped", node::pose_message(kFormat, some_estimate()));
   ASSERT_TRUE(pose);
   expect_header(pose->header, "odom");
   EXPECT_EQ(pose->pose.pose.position.y, 2.0);
@@ -77,8 +77,7 @@ TEST_F(Ros2Outputs, Path) {
   TypedPeer<nav_msgs_msg_dds__Path_> peer("/out", nav_msgs_msg_dds__Path__desc);
   const SE3 T = some_estimate().state.T_W_B;
   const auto* path =
-      passed(peer, "nav_msgs/Path",
-             node::path_message(Wire::Cdr, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}, kNames));
+      passed(peer, "nav_msgs/Path", node::path_message(kFormat, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}));
   ASSERT_TRUE(path);
   expect_header(path->header, "odom");
   ASSERT_EQ(path->poses._length, 2U);
@@ -91,8 +90,7 @@ TEST_F(Ros2Outputs, Transforms) {
   Rig rig;
   rig.cameras.push_back(
       {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
-  const auto* tf =
-      passed(peer, "tf2_msgs/TFMessage", node::camera_transforms_message(Wire::Cdr, kOutputTime, rig, kNames));
+  const auto* tf = passed(peer, "tf2_msgs/TFMessage", node::camera_transforms_message(kFormat, kOutputTime, rig));
   ASSERT_TRUE(tf);
   ASSERT_EQ(tf->transforms._length, 1U);
   expect_header(tf->transforms._buffer[0].header, "body");
@@ -104,8 +102,7 @@ TEST_F(Ros2Outputs, Transforms) {
 TEST_F(Ros2Outputs, Landmarks) {
   TypedPeer<sensor_msgs_msg_dds__PointCloud2_> peer("/out", sensor_msgs_msg_dds__PointCloud2__desc);
   const std::vector<Landmark> landmarks = {{7, {1, 2, 3}}, {9, {4, 5, 6}}};
-  const auto* cloud =
-      passed(peer, "sensor_msgs/PointCloud2", node::landmarks_message(Wire::Cdr, kOutputTime, landmarks, kNames));
+  const auto* cloud = passed(peer, "sensor_msgs/PointCloud2", node::landmarks_message(kFormat, kOutputTime, landmarks));
   ASSERT_TRUE(cloud);
   expect_header(cloud->header, "odom");
   EXPECT_EQ(cloud->height, 1U);
@@ -131,8 +128,7 @@ TEST_F(Ros2Outputs, OccupancyGrid) {
   OccupancySlice slice{cv::Mat(2, 3, CV_8SC1, cv::Scalar(OccupancySlice::kUnknown)), {-1.0, 2.0}};
   slice.cells.at<schar>(0, 1) = OccupancySlice::kOccupied;
   slice.cells.at<schar>(1, 2) = OccupancySlice::kFree;
-  const auto* grid =
-      passed(peer, "nav_msgs/OccupancyGrid", node::occupancy_message(Wire::Cdr, kOutputTime, slice, 0.05, kNames));
+  const auto* grid = passed(peer, "nav_msgs/OccupancyGrid", node::occupancy_message(kFormat, kOutputTime, slice, 0.05));
   ASSERT_TRUE(grid);
   expect_header(grid->header, "odom");
   EXPECT_EQ(grid->info.map_load_time.nanosec, 123'456'789U);
@@ -150,7 +146,7 @@ TEST_F(Ros2Outputs, Octomap) {
   TypedPeer<octomap_msgs_msg_dds__Octomap_> peer("/out", octomap_msgs_msg_dds__Octomap__desc);
   octomap::OcTree tree(0.05);
   tree.updateNode(octomap::point3d(1.0F, 2.0F, 3.0F), true);
-  const auto* map = passed(peer, "octomap_msgs/Octomap", node::octomap_message(Wire::Cdr, kOutputTime, tree, kNames));
+  const auto* map = passed(peer, "octomap_msgs/Octomap", node::octomap_message(kFormat, kOutputTime, tree));
   ASSERT_TRUE(map);
   expect_header(map->header, "odom");
   EXPECT_TRUE(map->binary);

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -67,7 +68,7 @@ class Driver {
     imu_ = participant.writer("/imu", "sensor_msgs::msg::dds_::Imu_", {reliable, false, 1000});
   }
 
-  bool is_heard(int nodes) const {
+  bool is_subscribed(int nodes) const {
     return readers(events_) >= nodes && readers(image_) >= nodes && readers(imu_) >= nodes;
   }
 
@@ -111,7 +112,7 @@ class Driver {
   std::uint64_t sequence_ = 0;
 };
 
-constexpr const char* kToPx4 = "/fmu/in/vehicle_visual_odometry";
+constexpr const char *kToPx4 = "/fmu/in/vehicle_visual_odometry", *kToPx4Type = "px4_msgs::msg::dds_::VehicleOdometry_";
 
 struct Output {
   const char* topic;  ///< "~" stands for the node
@@ -132,176 +133,114 @@ const Output kOutputs[] = {
     {"/tf", "tf2_msgs::msg::dds_::TFMessage_", {true, false, 1000}},
     {"/tf_static", "tf2_msgs::msg::dds_::TFMessage_", {true, true, 1}},
     {"/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", {true, false, 100}},
-    {kToPx4, "px4_msgs::msg::dds_::VehicleOdometry_", {false, false, 1000}},
+    {kToPx4, kToPx4Type, {false, false, 1000}},
 };
 
-/// Reads every field of the message; "complete" says whether nothing was left of it.
-Json odometry_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  const auto header = in.header();
-  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}, {"child", in.get<std::string>()}};
-  json["pose"] = in.doubles(7);
-  json["pose_covariance"] = in.doubles(36);
-  json["twist"] = in.doubles(6);
-  json["twist_covariance"] = in.doubles(36);
-  json["complete"] = in.at_end();
+/// A field of a message and how it is read into JSON.
+struct Field {
+  const char* name;
+  std::function<Json(Decoder&)> read;
+};
+using Fields = std::vector<Field>;
+
+template <typename T>
+Field one(const char* name) {
+  return {name, [](Decoder& in) { return Json(in.get<T>()); }};
+}
+template <typename T>
+Field some(const char* name, int count) {
+  return {name, [count](Decoder& in) {
+            Json list = Json::array();
+            for (int i = 0; i < count; ++i) list.push_back(in.get<T>());
+            return list;
+          }};
+}
+template <typename T>
+Field size_of(const char* name) {
+  return {name, [](Decoder& in) { return Json(in.get<std::vector<T>>().size()); }};
+}
+Json read_fields(Decoder& in, const Fields& fields) {
+  Json json = Json::object();
+  for (const Field& field : fields) json[field.name] = field.read(in);
   return json;
 }
-
-Json pose_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  const auto header = in.header();
-  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}};
-  json["pose"] = in.doubles(7);
-  json["pose_covariance"] = in.doubles(36);
-  json["complete"] = in.at_end();
-  return json;
+Field list(const char* name, const Fields& fields) {
+  return {name, [fields](Decoder& in) {
+            Json items = Json::array();
+            for (auto left = in.get<std::uint32_t>(); left > 0; --left) items.push_back(read_fields(in, fields));
+            return items;
+          }};
 }
 
-Json path_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  Json json = {{"frame", in.header().frame}, {"poses", Json::array()}};
-  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
-    const auto header = in.header();
-    json["poses"].push_back({{"stamp_ns", header.stamp_ns}, {"frame", header.frame}, {"pose", in.doubles(7)}});
-  }
-  json["complete"] = in.at_end();
-  return json;
-}
+constexpr auto text = one<std::string>;
+constexpr auto u8 = one<std::uint8_t>;
+constexpr auto u32 = one<std::uint32_t>;
+constexpr auto u64 = one<std::uint64_t>;
+constexpr auto doubles = some<double>;
+constexpr auto floats = some<float>;
 
-Json cloud_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  Json json = {{"frame", in.header().frame}, {"fields", Json::array()}};
-  json["height"] = in.get<std::uint32_t>();
-  json["width"] = in.get<std::uint32_t>();
-  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
-    Json field = {{"name", in.get<std::string>()}};
-    field["offset"] = in.get<std::uint32_t>();
-    field["datatype"] = in.get<std::uint8_t>();
-    field["count"] = in.get<std::uint32_t>();
-    json["fields"].push_back(field);
-  }
-  json["is_bigendian"] = in.get<bool>();
-  json["point_step"] = in.get<std::uint32_t>();
-  json["row_step"] = in.get<std::uint32_t>();
-  json["bytes"] = in.get<std::vector<std::uint8_t>>().size();
-  json["is_dense"] = in.get<bool>();
-  json["complete"] = in.at_end();
-  return json;
-}
+const Field kStamp{"stamp_ns", [](Decoder& in) {
+                     const std::int64_t s = in.get<std::int32_t>(), ns = in.get<std::uint32_t>();
+                     return Json(s * 1'000'000'000 + ns);
+                   }};
+const Field kFrame = text("frame"), kChild = text("child"), kPose = doubles("pose", 7),
+            kPoseCovariance = doubles("pose_covariance", 36);
+const Field kCells{"cells", [](Decoder& in) {
+                     std::map<std::string, int> cells = {{"occupied", 0}, {"free", 0}, {"unknown", 0}, {"others", 0}};
+                     for (const std::int8_t cell : in.get<std::vector<std::int8_t>>())
+                       ++cells[cell == 100 ? "occupied" : cell == 0 ? "free" : cell == -1 ? "unknown" : "others"];
+                     return Json(cells);
+                   }};
+const Field kValues{"values", [](Decoder& in) {
+                      Json values = Json::object();
+                      for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
+                        const auto key = in.get<std::string>();
+                        values[key] = in.get<std::string>();
+                      }
+                      return values;
+                    }};
 
-Json grid_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  const auto header = in.header();
-  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}};
-  json["load_time_s"] = in.get<std::int32_t>();
-  json["load_time_ns"] = in.get<std::uint32_t>();
-  json["resolution"] = in.get<float>();
-  json["width"] = in.get<std::uint32_t>();
-  json["height"] = in.get<std::uint32_t>();
-  json["origin"] = in.doubles(7);
-  std::map<std::string, int> cells = {{"occupied", 0}, {"free", 0}, {"unknown", 0}, {"others", 0}};
-  for (const std::int8_t cell : in.get<std::vector<std::int8_t>>())
-    ++cells[cell == 100 ? "occupied" : cell == 0 ? "free" : cell == -1 ? "unknown" : "others"];
-  json["cells"] = cells;
-  json["complete"] = in.at_end();
-  return json;
-}
+/// The fields of each message, in the order of its definition.
+const std::map<std::string, Fields> kMessages = {
+    {"Odometry",
+     {kStamp, kFrame, kChild, kPose, kPoseCovariance, doubles("twist", 6), doubles("twist_covariance", 36)}},
+    {"PoseWithCovarianceStamped", {kStamp, kFrame, kPose, kPoseCovariance}},
+    {"Path", {kStamp, kFrame, list("poses", {kStamp, kFrame, kPose})}},
+    {"PointCloud2",
+     {kStamp, kFrame, u32("height"), u32("width"),
+      list("fields", {text("name"), u32("offset"), u8("datatype"), u32("count")}), one<bool>("is_bigendian"),
+      u32("point_step"), u32("row_step"), size_of<std::uint8_t>("bytes"), one<bool>("is_dense")}},
+    {"OccupancyGrid",
+     {kStamp, kFrame, one<std::int32_t>("load_time_s"), u32("load_time_ns"), one<float>("resolution"), u32("width"),
+      u32("height"), doubles("origin", 7), kCells}},
+    {"Octomap",
+     {kStamp, kFrame, one<bool>("binary"), text("id"), one<double>("resolution"), size_of<std::int8_t>("bytes")}},
+    {"Image",
+     {kStamp, kFrame, u32("height"), u32("width"), text("encoding"), u8("is_bigendian"), u32("step"),
+      size_of<std::uint8_t>("bytes")}},
+    {"TFMessage", {list("transforms", {kStamp, kFrame, kChild, kPose})}},
+    {"DiagnosticArray",
+     {kStamp, kFrame, u32("statuses"), u8("level"), text("name"), text("message"), text("hardware"), kValues}},
+    {"VehicleOdometry",
+     {u64("timestamp"), u64("timestamp_sample"), u8("pose_frame"), floats("position", 3), floats("q", 4),
+      u8("velocity_frame"), floats("velocity", 3), floats("angular_velocity", 3), floats("position_variance", 3),
+      floats("orientation_variance", 3), floats("velocity_variance", 3), u8("reset_counter"),
+      one<std::int8_t>("quality")}}};
 
-Json octomap_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  const auto header = in.header();
-  Json json = {{"stamp_ns", header.stamp_ns}, {"frame", header.frame}};
-  json["binary"] = in.get<bool>();
-  json["id"] = in.get<std::string>();
-  json["resolution"] = in.get<double>();
-  json["bytes"] = in.get<std::vector<std::int8_t>>().size();
-  json["complete"] = in.at_end();
-  return json;
-}
-
-Json image_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  Json json = {{"frame", in.header().frame}};
-  json["height"] = in.get<std::uint32_t>();
-  json["width"] = in.get<std::uint32_t>();
-  json["encoding"] = in.get<std::string>();
-  json["is_bigendian"] = in.get<std::uint8_t>();
-  json["step"] = in.get<std::uint32_t>();
-  json["bytes"] = in.get<std::vector<std::uint8_t>>().size();
-  json["complete"] = in.at_end();
-  return json;
-}
-
-Json transforms_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  Json json = {{"transforms", Json::array()}};
-  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
-    Json transform = {{"frame", in.header().frame}};
-    transform["child"] = in.get<std::string>();
-    transform["pose"] = in.doubles(7);
-    json["transforms"].push_back(transform);
-  }
-  json["complete"] = in.at_end();
-  return json;
-}
-
-Json diagnostics_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  in.header();
-  Json json = {{"statuses", in.get<std::uint32_t>()}};
-  json["level"] = in.get<std::uint8_t>();
-  json["name"] = in.get<std::string>();
-  json["message"] = in.get<std::string>();
-  json["hardware"] = in.get<std::string>();
-  json["values"] = Json::object();
-  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
-    const auto key = in.get<std::string>();
-    json["values"][key] = in.get<std::string>();
-  }
-  json["complete"] = in.at_end();
-  return json;
-}
-
-Json floats(Decoder& in, int count) {
-  Json list = Json::array();
-  for (int i = 0; i < count; ++i) list.push_back(in.get<float>());
-  return list;
-}
-
-Json px4_fields(const std::string& bytes) {
-  Decoder in(bytes);
-  Json json = {{"timestamp", in.get<std::uint64_t>()}};
-  json["timestamp_sample"] = in.get<std::uint64_t>();
-  json["pose_frame"] = in.get<std::uint8_t>();
-  json["position"] = floats(in, 3);
-  json["q"] = floats(in, 4);
-  json["velocity_frame"] = in.get<std::uint8_t>();
-  for (const char* name :
-       {"velocity", "angular_velocity", "position_variance", "orientation_variance", "velocity_variance"})
-    json[name] = floats(in, 3);
-  json["reset_counter"] = in.get<std::uint8_t>();
-  json["quality"] = in.get<std::int8_t>();
-  json["complete"] = in.at_end();
-  return json;
-}
-
+/// Every field of the message; "complete" says whether nothing was left of it. type: "nav_msgs::msg::dds_::Odometry_".
 Json fields_of(const std::string& type, const std::string& bytes) {
-  const std::map<std::string, Json (*)(const std::string&)> decoders = {
-      {"Odometry", odometry_fields},   {"PoseWithCovarianceStamped", pose_fields},
-      {"Path", path_fields},           {"PointCloud2", cloud_fields},
-      {"Image", image_fields},         {"TFMessage", transforms_fields},
-      {"VehicleOdometry", px4_fields}, {"DiagnosticArray", diagnostics_fields},
-      {"OccupancyGrid", grid_fields},  {"Octomap", octomap_fields}};
   const std::size_t begin = type.rfind(':') + 1;
-  return decoders.at(type.substr(begin, type.size() - begin - 1))(bytes);
+  Decoder in(bytes);
+  Json json = read_fields(in, kMessages.at(type.substr(begin, type.size() - begin - 1)));
+  json["complete"] = in.at_end();
+  return json;
 }
 
-/// The position and rotation as trajectories have them.
+/// odometry: messages of the first output. Positions and rotations as trajectories have them.
 void write_tum(const std::string& file, const std::vector<std::string>& odometry) {
   std::ofstream out(file);
   for (const std::string& bytes : odometry) {
-    const Json fields = odometry_fields(bytes);
+    const Json fields = fields_of(kOutputs[0].type, bytes);
     const auto ns = fields["stamp_ns"].get<std::int64_t>();
     char stamp[40];
     std::snprintf(stamp, sizeof stamp, "%lld.%09lld", static_cast<long long>(ns / 1'000'000'000),
@@ -325,8 +264,8 @@ class Listener {
       readers_.push_back(participant.reader(topic, output.type, output.qos, collectors_[output.topic]));
     }
   }
-  /// The node publishes its poses to this.
-  bool is_told() const {
+  /// Whether the node publishes its poses to this.
+  bool is_connected() const {
     dds::SubscriptionMatchedStatus status;
     readers_.front()->get_subscription_matched_status(status);
     return status.current_count > 0;
@@ -352,7 +291,7 @@ class Listener {
     const std::vector<std::string> messages = collectors_[kToPx4].messages();
     std::vector<double> delays_ms;
     for (std::size_t i = 0; i < messages.size(); ++i) {
-      const auto sampled_us = px4_fields(messages[i])["timestamp_sample"].get<std::int64_t>();
+      const auto sampled_us = fields_of(kToPx4Type, messages[i])["timestamp_sample"].get<std::int64_t>();
       delays_ms.push_back(1e-3 * static_cast<double>(collectors_[kToPx4].arrivals_us()[i] - sampled_us));
     }
     std::ranges::sort(delays_ms);
@@ -376,7 +315,7 @@ void wait_until(Condition condition, const char* otherwise) {
 void drive_recording(Participant& participant, Driver& driver, const std::string& path, const Options& options) {
   const Recording recording = open_recording(path);
   const auto nodes = static_cast<int>(number_of(options, "nodes", 1));
-  wait_until([&driver, nodes] { return driver.is_heard(nodes); }, "nobody subscribes");
+  wait_until([&driver, nodes] { return driver.is_subscribed(nodes); }, "nobody subscribes");
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the readers of the other side match as well
   participant.lose(number_of(options, "loss", 0));
   const auto rig = options.find("rig");
@@ -409,7 +348,7 @@ int run_peer(const std::string& recording, const std::string& out, const Options
     driver.emplace(participant, options);
     drive_recording(participant, *driver, recording, options);
   } else {
-    wait_until([&listener] { return listener.is_told(); }, "nobody publishes");
+    wait_until([&listener] { return listener.is_connected(); }, "nobody publishes");
     std::ofstream(out + ".ready") << "\n";
   }
   const auto quiet = std::chrono::duration<double>(number_of(options, "listen", 1.5));

@@ -3,6 +3,7 @@
 #include "edged/live/event_thinner.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace edged {
 namespace {
@@ -36,9 +37,32 @@ std::size_t EventThinner::thin(std::vector<Event>& events, double share) {
     events[kept] = event;
     kept += next / kWhole;
   }
-  const std::size_t left_out = events.size() - kept;
+  const std::size_t dropped = events.size() - kept;
   events.resize(kept);
-  return left_out;
+  return dropped;
+}
+
+double OverloadShare::next(double delay, double passed_s) {
+  constexpr double kLeast = 0.08;
+  constexpr double kRemembered_s = 0.1;  // in which a delay of 2 lowers the lasting share by its e-fold
+  constexpr double kWorst = 3.0;         // a longer delay does not change it faster
+  lasting_ *= std::exp(passed_s / kRemembered_s * (1.0 - std::min(delay, kWorst)));
+  lasting_ = std::clamp(lasting_, kLeast, 1.0);
+  return std::max(kLeast, lasting_ / std::max(delay, 1.0));
+}
+
+OverloadThinner::OverloadThinner(double max_age_s) : free_age_s_(0.08 * max_age_s) {}  // longer than most packets take
+
+void OverloadThinner::thin(EventBatch& batch, double delay_s) {
+  if (batch.events.empty()) return;
+  const double passed_s = to_seconds(batch.events.back().t - batch.events.front().t);
+  const std::lock_guard lock(mutex_);
+  dropped_ += thinners_[batch.camera].thin(batch.events, share_.next(delay_s / free_age_s_, passed_s));
+}
+
+std::size_t OverloadThinner::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
 }
 
 }  // namespace edged

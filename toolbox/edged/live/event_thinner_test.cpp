@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <random>
@@ -34,8 +35,8 @@ TEST(EventThinner, KeepsTheShareOfEachBlockAndPolarityInOrder) {
     const std::vector<Event> all = flood(200'000, size);
     std::vector<Event> some = all;
     EventThinner thinner;
-    const std::size_t left_out = thinner.thin(some, share);
-    EXPECT_EQ(some.size() + left_out, all.size());
+    const std::size_t dropped = thinner.thin(some, share);
+    EXPECT_EQ(some.size() + dropped, all.size());
     using Block = std::array<int, 3>;
     const auto block_of = [](const Event& e) { return Block{e.x / 8, e.y / 8, e.positive ? 1 : 0}; };
     std::map<Block, double> wanted;
@@ -46,7 +47,7 @@ TEST(EventThinner, KeepsTheShareOfEachBlockAndPolarityInOrder) {
   }
 }
 
-TEST(EventThinner, SpreadsTheEventsThatStayOverTime) {
+TEST(EventThinner, SpreadsTheKeptEventsOverTime) {
   std::vector<Event> some = flood(100'000, {64, 48});
   EventThinner().thin(some, 0.1);
   std::array<int, 10> tenths{};
@@ -75,6 +76,61 @@ TEST(EventThinner, KeepsAllOrNothingOfAnySensor) {
   EXPECT_EQ(events.size(), 1000U);
   EXPECT_EQ(thinner.thin(events, 0.0), 1000U);
   EXPECT_EQ(thinner.thin(events, 0.5), 0U);
+}
+
+/// A consumer of events that come at `load` times the rate that it can process; its delay, 20 ms being free.
+struct Consumer {
+  void run(double load, double duration_s) {
+    constexpr double kBatch_s = 1e-3, kFree_s = 0.02;
+    for (double t = 0.0; t < duration_s; t += kBatch_s) {
+      share = overload.next(delay, kBatch_s);
+      delay = std::max(0.0, delay + (share * load - 1.0) * kBatch_s / kFree_s);
+      longest = std::max(longest, delay);
+    }
+  }
+
+  OverloadShare overload;
+  double delay = 0.0, share = 1.0, longest = 0.0;
+};
+
+TEST(OverloadShare, ADelayThatIsFreeCostsNoEvent) {
+  OverloadShare overload;
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(overload.next(0.99, 1e-3), 1.0);
+}
+
+TEST(OverloadShare, TheDelayReturnsToTheFreeOneWhileOverloadLasts) {
+  for (const double load : {1.5, 3.0, 6.0}) {
+    Consumer consumer;
+    consumer.run(load, 2.0);
+    EXPECT_NEAR(consumer.delay, 1.0, 0.1) << load;
+    EXPECT_NEAR(consumer.share, 1.0 / load, 0.1 / load) << load;
+    EXPECT_LT(consumer.longest, load) << load;  // it was where the share followed the delay alone
+  }
+}
+
+TEST(OverloadShare, AllEventsAreKeptSoonAfterOverload) {
+  Consumer consumer;
+  consumer.run(4.0, 2.0);
+  consumer.run(0.2, 0.5);
+  EXPECT_EQ(consumer.share, 1.0);
+}
+
+TEST(OverloadThinner, ThinsTheEventsOfEachCameraAndCountsThem) {
+  OverloadThinner thinner(0.25);
+  const auto batch_of = [](const char* camera) {
+    EventBatch batch{camera, std::vector<Event>(1000)};
+    for (std::size_t i = 0; i < batch.events.size(); ++i)
+      batch.events[i].t = Timestamp() + std::chrono::microseconds(i);
+    return batch;
+  };
+  EventBatch left = batch_of("left"), right = batch_of("right");
+  thinner.thin(left, 0.02);
+  EXPECT_EQ(left.events.size(), 1000U) << "20 ms are free";
+  thinner.thin(left, 0.06);
+  thinner.thin(right, 0.06);
+  EXPECT_NEAR(static_cast<double>(left.events.size()), 1000.0 / 3.0, 40.0);
+  EXPECT_NEAR(static_cast<double>(right.events.size()), 1000.0 / 3.0, 40.0);
+  EXPECT_EQ(thinner.dropped(), 2000U - left.events.size() - right.events.size());
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ namespace edged {
 
 class LiveClock {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// Sleeps until t is due, relative to the first t. Polls `stopped`, and returns early when that is true.
   void wait_for(Timestamp t, const std::function<bool()>& stopped);
 
@@ -20,14 +22,10 @@ class LiveClock {
   /// the one that waited.
   double since_due_s(Timestamp t) const;
 
-  /// The stamp that is due now; the least one before the first wait_for.
-  Timestamp now() const { return first_ ? *first_ + (Clock::now() - begin_) : Timestamp::min(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
+  /// When t is due. After the first wait_for.
   Clock::time_point due(Timestamp t) const { return begin_ + (t - *first_); }
 
+ private:
   std::optional<Timestamp> first_;  // written once, by the first wait_for
   Clock::time_point begin_;
 };

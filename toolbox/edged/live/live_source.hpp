@@ -3,25 +3,18 @@
 // A recording played in real time by a thread of its own, as by sensors: for a slow consumer events are thinned.
 #pragma once
 
-#include <atomic>
 #include <functional>
-#include <map>
 #include <optional>
-#include <string>
 
 #include "edged/dataset.hpp"
+#include "edged/live/drop_report.hpp"
 #include "edged/live/event_thinner.hpp"
 #include "edged/live/live_clock.hpp"
-#include "edged/live/overload_share.hpp"
 #include "edged/live/read_ahead.hpp"
-#include "edged/live/shed_report.hpp"
 #include "edged/timing.hpp"
 
 namespace edged {
 
-/// While something waits for longer than a small part of the allowed age, or the reader is that late, a share of new
-/// events stays that falls until the delay is that part again: the events become fewer in the whole image, and there is
-/// no gap in time. A small share always stays: where reading itself is too slow, to leave out all would not help.
 class LiveSource {
  public:
   /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
@@ -29,8 +22,8 @@ class LiveSource {
   LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted,
              std::function<void(const Measurement&)> on_due = {});
 
-  /// As Dataset::next, without shed measurements; waits until the next one is due. Rethrows errors of the dataset after
-  /// all measurements before them. Warns in the log when shedding begins and ends.
+  /// As Dataset::next, without dropped measurements; waits until the next one is due. Rethrows errors of the dataset
+  /// after all measurements before them. Warns in the log when dropping begins and ends.
   std::optional<Measurement> next();
 
   /// Measurements up to t have been processed now. Returns their latency [s].
@@ -44,23 +37,19 @@ class LiveSource {
 
   /// From the due time of a measurement to its result.
   const StageTiming& latency() const { return latency_; }
-  /// By the queue, and those that were thinned out before it.
-  ShedCounters shed() const;
+  /// By the queue, and by thinning before it.
+  DropCounters dropped() const;
   const StageTiming& reading() const { return reader_.reading(); }
   QueuePeaks peaks() const { return reader_.queue().peaks(); }
 
  private:
-  void pace(Measurement& measurement, const std::function<bool()>& stopped);
-  void thin(EventBatch& batch);
+  LiveClock::Clock::time_point pace(Measurement& measurement, const std::function<bool()>& stopped);
 
-  const double free_age_s_;  // without thinning
   std::function<void(const Measurement&)> on_due_;
   LiveClock clock_;
   StageTiming latency_;
-  ShedReport report_;
-  std::map<std::string, EventThinner> thinners_;  // by camera, of the thread
-  OverloadShare share_;                           // of events, of the thread
-  std::atomic<std::size_t> thinned_ = 0;
+  DropReport report_;
+  OverloadThinner thinner_;
   ReadAhead reader_;  // last member: its thread uses the others
 };
 

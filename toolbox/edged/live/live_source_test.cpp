@@ -42,7 +42,7 @@ TEST(LiveSource, GivesAllOfARecordingAtItsOwnSpeed) {
   EXPECT_EQ(counts.events, storm.events());
   EXPECT_EQ(counts.frames, storm.frames());
   EXPECT_EQ(counts.imu, storm.imu_samples());
-  EXPECT_EQ(source.shed(), ShedCounters{});
+  EXPECT_EQ(source.dropped(), DropCounters{});
   EXPECT_EQ(source.latency().count(), 2 * storm.imu_samples() + storm.frames());
   EXPECT_GE(source.latency().max_s(), 0.0);
 }
@@ -61,10 +61,10 @@ TEST(LiveSource, WhoIsTooSlowMissesTheOldestEventsAndNoImuSample) {
   LiveSource source(storm, {.max_age_s = 0.05}, kNotInterrupted);
   while (source.peaks().imu < storm.imu_samples()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   const Counts counts = count_all(source);
-  EXPECT_GT(source.shed().events, storm.events() / 2);
-  EXPECT_GT(source.shed().frames, 0U);
-  EXPECT_EQ(counts.events + source.shed().events, storm.events());
-  EXPECT_EQ(counts.frames + source.shed().frames, storm.frames());
+  EXPECT_GT(source.dropped().events, storm.events() / 2);
+  EXPECT_GT(source.dropped().frames, 0U);
+  EXPECT_EQ(counts.events + source.dropped().events, storm.events());
+  EXPECT_EQ(counts.frames + source.dropped().frames, storm.frames());
   EXPECT_EQ(counts.imu, storm.imu_samples());
   EXPECT_LE(source.peaks().age_s, 0.1);
 }
@@ -84,9 +84,9 @@ TEST(LiveSource, WhoHaltsMissesSomeOfTheLaterEventsAndFindsNoGap) {
       before = event.t;
     }
   }
-  EXPECT_GT(source.shed().events, storm.events() / 10);
-  EXPECT_EQ(kept + source.shed().events, storm.events());
-  EXPECT_EQ(source.shed().frames, 0U);
+  EXPECT_GT(source.dropped().events, storm.events() / 10);
+  EXPECT_EQ(kept + source.dropped().events, storm.events());
+  EXPECT_EQ(source.dropped().frames, 0U);
 }
 
 TEST(LiveSource, AnErrorOfTheRecordingComesAfterAllThatCameBeforeIt) {

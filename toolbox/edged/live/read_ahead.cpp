@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/live/read_ahead.hpp"
 
-#include <chrono>
 #include <utility>
 
 namespace edged {
@@ -27,14 +26,14 @@ void ReadAhead::read(const std::stop_token& stop) {
 }
 
 void ReadAhead::read_until(const std::function<bool()>& stopped) {
-  using Clock = std::chrono::steady_clock;
+  using Clock = MeasurementQueue::Clock;
   while (!stopped()) {
     const Clock::time_point begin = Clock::now();
     std::optional<Measurement> measurement = dataset_.next();
     reading_.add(std::chrono::duration<double>(Clock::now() - begin).count());
     if (!measurement) return;
-    if (pace_) pace_(*measurement, stopped);
-    if (!queue_.push(std::move(*measurement))) return;
+    const Clock::time_point due = pace_ ? pace_(*measurement, stopped) : Clock::now();
+    if (!queue_.push(std::move(*measurement), due)) return;
   }
 }
 

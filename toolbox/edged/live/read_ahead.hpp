@@ -15,11 +15,12 @@
 
 namespace edged {
 
-/// The measurements, and their order, are those of the dataset, except those that the queue sheds.
+/// The measurements, and their order, are those of the dataset, without those that the queue drops.
 class ReadAhead {
  public:
-  /// May delay measurements, in the thread, and leave out events; the function returns whether to give up.
-  using Pace = std::function<void(Measurement&, const std::function<bool()>& stopped)>;
+  /// May delay a measurement, in the thread, and drop events of it. Returns when it was due. stopped: whether to give
+  /// up.
+  using Pace = std::function<MeasurementQueue::Clock::time_point(Measurement&, const std::function<bool()>& stopped)>;
 
   /// Only the thread may use `dataset` until stop, except info(). Ends at once when `interrupted` returns true.
   ReadAhead(Dataset& dataset, const QueueConfig& config, WhenFull when_full, std::function<bool()> interrupted,

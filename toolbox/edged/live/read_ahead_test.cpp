@@ -48,10 +48,12 @@ TEST(ReadAhead, GivesTheSameInTheSameOrderWhoeverIsSlower) {
     EventStorm storm = gust(), slow = gust();
     ReadAhead reader(storm, kNarrow, WhenFull::Wait, kNobodyInterrupts);
     EXPECT_EQ(read_all(reader, pause), all);
-    ReadAhead held(slow, kNarrow, WhenFull::Wait, kNobodyInterrupts,
-                   [&](const Measurement&, const auto&) { std::this_thread::sleep_for(pause); });
+    ReadAhead held(slow, kNarrow, WhenFull::Wait, kNobodyInterrupts, [&](const Measurement&, const auto&) {
+      std::this_thread::sleep_for(pause);
+      return MeasurementQueue::Clock::now();
+    });
     EXPECT_EQ(read_all(held), all);
-    EXPECT_EQ(held.queue().shed(), ShedCounters{});
+    EXPECT_EQ(held.queue().dropped(), DropCounters{});
   }
 }
 

@@ -23,6 +23,12 @@ namespace edged::node {
 
 // Stamps that ROS cannot hold become its first or last one.
 
+/// What all messages have in common.
+struct Format {
+  Wire wire = Wire::Cdr;
+  FrameNames frames = {};
+};
+
 /// A state as it is published.
 struct Estimate {
   NavState state;
@@ -32,27 +38,26 @@ struct Estimate {
 
 /// nav_msgs/Odometry: the pose of the body in the world, and its velocities in the body's axes. The covariance of the
 /// pose is about the axes of the world, as ROS wants it; zeros are unknown.
-std::string odometry_message(Wire wire, const Estimate& estimate, const FrameNames& frames);
-/// geometry_msgs/PoseWithCovarianceStamped: the same pose and covariance.
-std::string pose_message(Wire wire, const Estimate& estimate, const FrameNames& frames);
+std::string odometry_message(const Format& format, const Estimate& estimate);
+/// geometry_msgs/PoseWithCovarianceStamped: pose and covariance as in odometry_message.
+std::string pose_message(const Format& format, const Estimate& estimate);
 /// nav_msgs/Path.
-std::string path_message(Wire wire, Timestamp t, const std::deque<StampedPose>& poses, const FrameNames& frames);
+std::string path_message(const Format& format, Timestamp t, const std::deque<StampedPose>& poses);
 
 /// tf2_msgs/TFMessage: from the world to the body.
-std::string body_transform_message(Wire wire, const NavState& state, const FrameNames& frames);
+std::string body_transform_message(const Format& format, const NavState& state);
 /// tf2_msgs/TFMessage: from the body to each camera as calibrated so far.
-std::string camera_transforms_message(Wire wire, Timestamp t, const Rig& rig, const FrameNames& frames);
+std::string camera_transforms_message(const Format& format, Timestamp t, const Rig& rig);
 
 /// sensor_msgs/PointCloud2: points with x, y, z in the world, and the id of the feature (its lower 32 bits).
-std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> landmarks, const FrameNames& frames);
+std::string landmarks_message(const Format& format, Timestamp t, std::span<const Landmark> landmarks);
 
 /// nav_msgs/OccupancyGrid: a slice whose cells have edges of voxel_m, at height 0.
-std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slice, double voxel_m,
-                              const FrameNames& frames);
+std::string occupancy_message(const Format& format, Timestamp t, const OccupancySlice& slice, double voxel_m);
 
 /// octomap_msgs/Octomap: each voxel occupied or free, by what is more likely, in the binary form of OctoMap. Inner
 /// nodes of the tree must be updated.
-std::string octomap_message(Wire wire, Timestamp t, const octomap::OcTree& tree, const FrameNames& frames);
+std::string octomap_message(const Format& format, Timestamp t, const octomap::OcTree& tree);
 
 /// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);

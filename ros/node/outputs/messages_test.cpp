@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/messages.hpp"
+#include "node/outputs/messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,6 @@
 
 namespace edged::node {
 namespace {
-
-const FrameNames kFrames{"odom", "body"};
 
 class RosMessages : public ::testing::TestWithParam<Wire> {
  protected:
@@ -53,7 +51,7 @@ OdometryFields odometry_fields(WireReader reader) {
 }
 
 TEST_P(RosMessages, OdometryHasThePoseInTheWorldAndTheVelocitiesInTheBody) {
-  const std::string message = odometry_message(GetParam(), turned_estimate(), kFrames);
+  const std::string message = odometry_message({GetParam()}, turned_estimate());
   const OdometryFields odometry = odometry_fields(reader(message));
   EXPECT_EQ(odometry.stamp, turned_estimate().state.t);
   EXPECT_EQ(odometry.child, "body");
@@ -68,7 +66,7 @@ TEST_P(RosMessages, OdometryHasThePoseInTheWorldAndTheVelocitiesInTheBody) {
 TEST_P(RosMessages, StampsThatRosCannotHoldBecomeItsFirstOrLast) {
   Estimate estimate = turned_estimate();
   estimate.state.t = timestamp_from_ns(-5);
-  EXPECT_EQ(odometry_fields(reader(odometry_message(GetParam(), estimate, kFrames))).stamp, Timestamp());
+  EXPECT_EQ(odometry_fields(reader(odometry_message({GetParam()}, estimate))).stamp, Timestamp());
 }
 
 TEST_P(RosMessages, CovariancesAreAboutTheAxesThatRosWants) {
@@ -76,7 +74,7 @@ TEST_P(RosMessages, CovariancesAreAboutTheAxesThatRosWants) {
   estimate.covariance = StateCovariance{Eigen::Vector3d(1, 2, 3).asDiagonal(), Eigen::Vector3d(4, 5, 6).asDiagonal(),
                                         Eigen::Vector3d(7, 8, 9).asDiagonal()};
   estimate.covariance->position(0, 1) = estimate.covariance->position(1, 0) = 0.5;
-  const std::string message = odometry_message(GetParam(), estimate, kFrames);
+  const std::string message = odometry_message({GetParam()}, estimate);
   const OdometryFields odometry = odometry_fields(reader(message));
   EXPECT_EQ(odometry.pose_covariance[0], 1.0);
   EXPECT_EQ(odometry.pose_covariance[1], 0.5);
@@ -91,13 +89,13 @@ TEST_P(RosMessages, TransformsLeadFromTheWorldToTheBodyAndOnToEachCamera) {
   Rig rig;
   rig.cameras.push_back(
       {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
-  const std::string body = body_transform_message(GetParam(), turned_estimate().state, kFrames);
+  const std::string body = body_transform_message({GetParam()}, turned_estimate().state);
   WireReader to_body = reader(body);
   EXPECT_EQ(to_body.number<std::uint32_t>(), 1U);
   to_body.header();
   EXPECT_EQ(to_body.text(), "body");
   EXPECT_EQ(to_body.vector<3>().x(), 1.0);
-  const std::string cameras = camera_transforms_message(GetParam(), Timestamp(), rig, kFrames);
+  const std::string cameras = camera_transforms_message({GetParam()}, Timestamp(), rig);
   WireReader to_camera = reader(cameras);
   EXPECT_EQ(to_camera.number<std::uint32_t>(), 1U);
   to_camera.header();

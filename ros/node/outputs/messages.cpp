@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/messages.hpp"
+#include "node/outputs/messages.hpp"
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
@@ -16,6 +17,17 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 void write_header(WireWriter& out, Wire wire, Timestamp t, const std::string& frame) {
   out.header(std::clamp(t, timestamp_from_ns(0), latest_stamp(wire)), frame);
+}
+
+/// A message that begins with a header.
+WireWriter message_at(Wire wire, Timestamp t, const std::string& frame) {
+  WireWriter out(wire);
+  write_header(out, wire, t, frame);
+  return out;
+}
+
+void write_counts(WireWriter& out, std::initializer_list<std::size_t> counts) {
+  for (const std::size_t count : counts) out.number(static_cast<std::uint32_t>(count));
 }
 
 void write_vector(WireWriter& out, const Eigen::Vector3d& v) { out.numbers({v.data(), 3}); }
@@ -57,7 +69,7 @@ void write_field(WireWriter& out, std::string_view name, std::uint32_t offset, s
   out.text(name);
   out.number(offset);
   out.number(type);
-  out.number(std::uint32_t{1});
+  write_counts(out, {1});
 }
 
 cv::Mat with_tracks(const cv::Mat& image, std::span<const Track> tracks) {
@@ -74,11 +86,10 @@ cv::Mat with_tracks(const cv::Mat& image, std::span<const Track> tracks) {
 
 }  // namespace
 
-std::string odometry_message(Wire wire, const Estimate& estimate, const FrameNames& frames) {
+std::string odometry_message(const Format& format, const Estimate& estimate) {
   const NavState& state = estimate.state;
-  WireWriter out(wire);
-  write_header(out, wire, state.t, frames.world);
-  out.text(frames.body);
+  WireWriter out = message_at(format.wire, state.t, format.frames.world);
+  out.text(format.frames.body);
   write_pose(out, state.T_W_B);
   write_covariance(out, pose_covariance(estimate));
   write_vector(out, state.T_W_B.rotation().conjugate() * state.v_W);
@@ -87,55 +98,49 @@ std::string odometry_message(Wire wire, const Estimate& estimate, const FrameNam
   return out.message();
 }
 
-std::string pose_message(Wire wire, const Estimate& estimate, const FrameNames& frames) {
-  WireWriter out(wire);
-  write_header(out, wire, estimate.state.t, frames.world);
+std::string pose_message(const Format& format, const Estimate& estimate) {
+  WireWriter out = message_at(format.wire, estimate.state.t, format.frames.world);
   write_pose(out, estimate.state.T_W_B);
   write_covariance(out, pose_covariance(estimate));
   return out.message();
 }
 
-std::string path_message(Wire wire, Timestamp t, const std::deque<StampedPose>& poses, const FrameNames& frames) {
-  WireWriter out(wire);
-  write_header(out, wire, t, frames.world);
-  out.number(static_cast<std::uint32_t>(poses.size()));
+std::string path_message(const Format& format, Timestamp t, const std::deque<StampedPose>& poses) {
+  WireWriter out = message_at(format.wire, t, format.frames.world);
+  write_counts(out, {poses.size()});
   for (const StampedPose& pose : poses) {
-    write_header(out, wire, pose.t, frames.world);
+    write_header(out, format.wire, pose.t, format.frames.world);
     write_pose(out, pose.T);
   }
   return out.message();
 }
 
-std::string body_transform_message(Wire wire, const NavState& state, const FrameNames& frames) {
-  WireWriter out(wire);
-  out.number(std::uint32_t{1});
-  write_transform(out, wire, state.t, frames.world, frames.body, state.T_W_B);
+std::string body_transform_message(const Format& format, const NavState& state) {
+  WireWriter out(format.wire);
+  write_counts(out, {1});
+  write_transform(out, format.wire, state.t, format.frames.world, format.frames.body, state.T_W_B);
   return out.message();
 }
 
-std::string camera_transforms_message(Wire wire, Timestamp t, const Rig& rig, const FrameNames& frames) {
-  WireWriter out(wire);
-  out.number(static_cast<std::uint32_t>(rig.cameras.size()));
-  for (const RigCamera& camera : rig.cameras) write_transform(out, wire, t, frames.body, camera.name, camera.T_B_C);
+std::string camera_transforms_message(const Format& format, Timestamp t, const Rig& rig) {
+  WireWriter out(format.wire);
+  write_counts(out, {rig.cameras.size()});
+  for (const RigCamera& camera : rig.cameras)
+    write_transform(out, format.wire, t, format.frames.body, camera.name, camera.T_B_C);
   return out.message();
 }
 
-std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> landmarks, const FrameNames& frames) {
+std::string landmarks_message(const Format& format, Timestamp t, std::span<const Landmark> landmarks) {
   constexpr std::uint8_t kUint32 = 6, kFloat32 = 7;  // of sensor_msgs/PointField
-  constexpr std::uint32_t kPointBytes = 16;
-  const auto count = static_cast<std::uint32_t>(landmarks.size());
-  WireWriter out(wire);
-  write_header(out, wire, t, frames.world);
-  out.number(std::uint32_t{1});  // height: not in the order of an image
-  out.number(count);
-  out.number(std::uint32_t{4});
+  constexpr std::size_t kPointBytes = 16;
+  WireWriter out = message_at(format.wire, t, format.frames.world);
+  write_counts(out, {1, landmarks.size(), 4});  // height: not in the order of an image; width; fields
   write_field(out, "x", 0, kFloat32);
   write_field(out, "y", 4, kFloat32);
   write_field(out, "z", 8, kFloat32);
   write_field(out, "id", 12, kUint32);
   out.number(std::uint8_t{0});  // little-endian
-  out.number(kPointBytes);
-  out.number(kPointBytes * count);
+  write_counts(out, {kPointBytes, kPointBytes * landmarks.size()});
   std::string points;
   for (const Landmark& landmark : landmarks) {
     for (int axis = 0; axis < 3; ++axis) append_number(points, static_cast<float>(landmark.p_W[axis]));
@@ -146,24 +151,20 @@ std::string landmarks_message(Wire wire, Timestamp t, std::span<const Landmark> 
   return out.message();
 }
 
-std::string occupancy_message(Wire wire, Timestamp t, const OccupancySlice& slice, double voxel_m,
-                              const FrameNames& frames) {
-  WireWriter out(wire);
-  write_header(out, wire, t, frames.world);
-  out.time(std::clamp(t, timestamp_from_ns(0), latest_stamp(wire)));
+std::string occupancy_message(const Format& format, Timestamp t, const OccupancySlice& slice, double voxel_m) {
+  WireWriter out = message_at(format.wire, t, format.frames.world);
+  out.time(std::clamp(t, timestamp_from_ns(0), latest_stamp(format.wire)));
   out.number(static_cast<float>(voxel_m));
-  out.number(static_cast<std::uint32_t>(slice.cells.cols));
-  out.number(static_cast<std::uint32_t>(slice.cells.rows));
+  write_counts(out, {static_cast<std::size_t>(slice.cells.cols), static_cast<std::size_t>(slice.cells.rows)});
   write_pose(out, {Eigen::Quaterniond::Identity(), {slice.corner_W.x(), slice.corner_W.y(), 0.0}});
   out.bytes({slice.cells.data, slice.cells.total()});
   return out.message();
 }
 
-std::string octomap_message(Wire wire, Timestamp t, const octomap::OcTree& tree, const FrameNames& frames) {
+std::string octomap_message(const Format& format, Timestamp t, const octomap::OcTree& tree) {
   std::ostringstream voxels;
   tree.writeBinaryData(voxels);
-  WireWriter out(wire);
-  write_header(out, wire, t, frames.world);
+  WireWriter out = message_at(format.wire, t, format.frames.world);
   out.number(std::uint8_t{1});  // binary
   out.text(tree.getTreeType());
   out.number(tree.getResolution());
@@ -173,13 +174,11 @@ std::string octomap_message(Wire wire, Timestamp t, const octomap::OcTree& tree,
 
 std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera) {
   const cv::Mat rendered = with_tracks(camera.image, camera.tracks);
-  WireWriter out(wire);
-  write_header(out, wire, t, camera.name);
-  out.number(static_cast<std::uint32_t>(rendered.rows));
-  out.number(static_cast<std::uint32_t>(rendered.cols));
+  WireWriter out = message_at(wire, t, camera.name);
+  write_counts(out, {static_cast<std::size_t>(rendered.rows), static_cast<std::size_t>(rendered.cols)});
   out.text("bgr8");
   out.number(std::uint8_t{0});  // little-endian
-  out.number(static_cast<std::uint32_t>(rendered.step[0]));
+  write_counts(out, {rendered.step[0]});
   out.bytes({rendered.data, rendered.total() * rendered.elemSize()});
   return out.message();
 }
@@ -206,14 +205,13 @@ std::string vehicle_odometry_message(const VehicleOdometry& odometry) {
 }
 
 std::string diagnostics_message(Wire wire, Timestamp t, const std::string& hardware, const Diagnosis& diagnosis) {
-  WireWriter out(wire);
-  write_header(out, wire, t, "");
-  out.number(std::uint32_t{1});
+  WireWriter out = message_at(wire, t, "");
+  write_counts(out, {1});
   out.number(static_cast<std::uint8_t>(diagnosis.level));
   out.text("edged: odometry");
   out.text(diagnosis.message);
   out.text(hardware);
-  out.number(static_cast<std::uint32_t>(diagnosis.values.size()));
+  write_counts(out, {diagnosis.values.size()});
   for (const auto& [key, value] : diagnosis.values) {
     out.text(key);
     out.text(value);

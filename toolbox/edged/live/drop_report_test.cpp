@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/live/shed_report.hpp"
+#include "edged/live/drop_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,15 +10,15 @@ namespace {
 
 using testing::HasSubstr;
 
-ShedReport::Clock::time_point wall_ms(int ms) { return ShedReport::Clock::time_point(std::chrono::milliseconds(ms)); }
+DropReport::Clock::time_point wall_ms(int ms) { return DropReport::Clock::time_point(std::chrono::milliseconds(ms)); }
 
-TEST(ShedReport, SaysNothingWhileNothingIsShed) {
-  ShedReport report;
+TEST(DropReport, SaysNothingWhileNothingIsDropped) {
+  DropReport report;
   for (const int ms : {0, 1000, 60000}) EXPECT_EQ(report.update({}, wall_ms(ms)), std::nullopt);
 }
 
-TEST(ShedReport, TellsTheBeginningAndAfterAQuietSecondTheEndWithCounts) {
-  ShedReport report;
+TEST(DropReport, TellsTheBeginningAndAfterAQuietSecondTheEndWithCounts) {
+  DropReport report;
   EXPECT_THAT(report.update({100, 0}, wall_ms(0)).value_or(""), HasSubstr("oldest events"));
   EXPECT_EQ(report.update({300, 2}, wall_ms(700)), std::nullopt);
   EXPECT_EQ(report.update({300, 2}, wall_ms(1600)), std::nullopt);
@@ -26,8 +26,8 @@ TEST(ShedReport, TellsTheBeginningAndAfterAQuietSecondTheEndWithCounts) {
   EXPECT_EQ(report.update({300, 2}, wall_ms(9000)), std::nullopt);
 }
 
-TEST(ShedReport, TellsOfOneBoutInTenSecondsAndOfTheOthersWithTheNext) {
-  ShedReport report;
+TEST(DropReport, TellsOfOnePeriodInTenSecondsAndOfTheOthersWithTheNext) {
+  DropReport report;
   report.update({10, 0}, wall_ms(0));
   EXPECT_TRUE(report.update({10, 0}, wall_ms(1000)));
   EXPECT_EQ(report.update({30, 0}, wall_ms(5000)), std::nullopt);

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What is published at each IMU sample, as it arrives: the prediction, and the state for an autopilot.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "edged/autopilot/arrival_clock.hpp"
+#include "edged/autopilot/mavlink_output.hpp"
+#include "edged/autopilot/vehicle_stream.hpp"
+#include "edged/pipeline/localization/state_prediction.hpp"
+#include "node/outputs/messages.hpp"
+#include "node/transport.hpp"
+
+namespace edged::node {
+
+/// Predicts in the thread that receives the samples: the thread of the odometry is busy with packets for milliseconds.
+/// From any thread.
+class ImuRateOutputs {
+ public:
+  /// Throws InputError where config.mavlink cannot be opened, config.autopilot is wrong, or ROS 1 is to have PX4's
+  /// topic.
+  ImuRateOutputs(Transport& transport, const NodeConfig& config);
+
+  /// A sample that has just arrived.
+  void add(const ImuSample& sample);
+  /// Each step, in order.
+  void note(const Step& step);
+
+  /// The rate measured at t [rad/s]: of the sample that was the newest then.
+  Eigen::Vector3d gyro_at(Timestamp t) const;
+  std::optional<Timestamp> newest() const;
+
+ private:
+  void keep(const ImuSample& sample);
+  void send_to_autopilot(const NavState& state, const ImuSample& sample);
+
+  const Format format_;
+  const std::unique_ptr<Publisher> topic_;
+  std::unique_ptr<Publisher> px4_;
+  std::unique_ptr<MavlinkOutput> mavlink_;
+
+  mutable std::mutex mutex_;  ///< guards all below: a state and the reset counter of its step belong together
+  ArrivalClock clock_;
+  VehicleStream stream_;  ///< for PX4
+  StatePrediction prediction_;
+  std::optional<StateCovariance> covariance_;
+  std::deque<ImuSample> recent_;
+};
+
+}  // namespace edged::node

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "node/outputs/outputs.hpp"
+
+namespace edged::node {
+namespace {
+
+constexpr std::size_t kImageQueue = 2, kDiagnosticsQueue = 100;  // messages that may wait for a slow subscriber
+
+}  // namespace
+
+Outputs::Outputs(Transport& transport, const NodeConfig& config)
+    : transport_(transport),
+      poses_(transport, config),
+      map_(transport, config),
+      diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kDiagnosticsQueue})) {}
+
+void Outputs::add_camera(const std::string& name, const std::string& topic) {
+  tracks_[name] = transport_.advertise({"~/tracks/" + topic, "sensor_msgs/Image", kImageQueue});
+}
+
+void Outputs::publish(const Step& step, const Eigen::Vector3d& gyro_B) {
+  publish_images(step);
+  if (!is_tracking(step.status)) return;
+  poses_.publish({step.state, gyro_B, step.covariance});
+  map_.publish(step);
+}
+
+void Outputs::publish_images(const Step& step) const {
+  for (const CameraStep& camera : step.cameras) {
+    const auto topic = tracks_.find(camera.name);
+    if (topic != tracks_.end() && !camera.image.empty() && topic->second->wanted())
+      topic->second->publish(tracks_message(transport_.wire(), step.t, camera));
+  }
+}
+
+void Outputs::publish(const Diagnosis& diagnosis, const std::string& hardware) const {
+  diagnostics_->publish(diagnostics_message(transport_.wire(), transport_.now(), hardware, diagnosis));
+}
+
+}  // namespace edged::node

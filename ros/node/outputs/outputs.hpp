@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The topics that the node publishes, but those at the rate of the IMU.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "node/outputs/map_outputs.hpp"
+#include "node/outputs/pose_outputs.hpp"
+
+namespace edged::node {
+
+/// All messages but poses and transforms are made only for subscribers.
+class Outputs {
+ public:
+  /// Throws InputError for heights of the grid in the wrong order.
+  Outputs(Transport& transport, const NodeConfig& config);
+
+  /// Advertises the tracked images of a camera. topic: "events", "frames", or its name.
+  void add_camera(const std::string& name, const std::string& topic);
+  /// The cameras of the mode as calibrated so far.
+  void publish_cameras(Timestamp t, const Rig& rig) { poses_.publish_cameras(t, rig); }
+  /// The results of one packet. gyro_B: measured at that time [rad/s].
+  void publish(const Step& step, const Eigen::Vector3d& gyro_B);
+  void publish(const Diagnosis& diagnosis, const std::string& hardware) const;
+
+ private:
+  void publish_images(const Step& step) const;
+
+  Transport& transport_;
+  PoseOutputs poses_;
+  MapOutputs map_;
+  std::map<std::string, std::unique_ptr<Publisher>> tracks_;  ///< by camera
+  const std::unique_ptr<Publisher> diagnostics_;
+};
+
+}  // namespace edged::node

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "node/status_log.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+namespace edged::node {
+namespace {
+
+constexpr Duration kMostJitter = std::chrono::milliseconds(5);
+constexpr std::size_t kMostLines = 100;  // texts of damaged messages may differ without end
+
+/// What is wrong with a topic, each with its remedy; a text that does not change while it stays wrong.
+std::vector<std::string> troubles_of(const std::string& topic, const InputCounters& input) {
+  std::vector<std::string> all;
+  if (!input.transport_trouble.empty()) all.push_back(topic + ": " + input.transport_trouble);
+  if (!input.trouble.empty()) all.push_back(fmt::format("{}: unreadable messages: {}", topic, input.trouble));
+  if (input.missed > input.lost + input.refused)
+    all.push_back(topic +
+                  ": numbers are missing, or stamps of the IMU, so messages were lost before they came here (counted "
+                  "in /diagnostics): raise net.core.rmem_max, or lower the rate");
+  if (input.refused > 0)
+    all.push_back(topic +
+                  ": messages were refused, as this computer is too slow: lower the rate, or use fewer cameras");
+  if (input.lost > 0)
+    all.push_back(
+        topic +
+        ": messages were lost on the way (counted in /diagnostics): raise net.core.rmem_max, or lower the rate");
+  if (input.time_back > 0)
+    all.push_back(topic +
+                  ": time goes back within messages: the driver loses data at high rates; lower its bias or rate");
+  if (input.time_ahead > 0) all.push_back(topic + ": time jumps ahead within messages: the driver loses data");
+  if (input.stamp_jitter > kMostJitter)
+    all.push_back(topic + ": stamps of the messages are those of their arrival; the clock of the sensor is used");
+  return all;
+}
+
+}  // namespace
+
+void StatusLog::add(const Step& step) {
+  reason_ = step.status == TrackingStatus::Lost ? step.lost_because : step.waiting_for;
+  if (!step.started.empty()) spdlog::info(step.started);
+  if (std::exchange(status_, step.status) == step.status) return;
+  const auto level = step.status == TrackingStatus::Lost ? spdlog::level::warn : spdlog::level::info;
+  spdlog::log(level, fmt::format("{}{}{}", to_string(step.status), reason_.empty() ? "" : ": ", reason_));
+}
+
+void StatusLog::complete(NodeHealth& health) {
+  health.status = status_;
+  health.reason = reason_;
+  const std::size_t lost = lost_measurements(health);
+  health.newly_lost = lost - std::exchange(lost_, lost);
+  if (const auto line = drops_.update(health.dropped, DropReport::Clock::now())) spdlog::warn(*line);
+  for (const auto& [topic, input] : health.inputs)
+    for (const std::string& trouble : troubles_of(topic, input))
+      if (said_.size() < kMostLines && said_.insert(trouble).second) spdlog::warn(trouble);
+}
+
+}  // namespace edged::node
