@@ -15,7 +15,7 @@
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
 #include "edged/io/core/recording_writer.hpp"
-#include "node/outputs/period.hpp"
+#include "topics/period.hpp"
 
 namespace edged::ros2 {
 

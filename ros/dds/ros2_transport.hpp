@@ -16,7 +16,7 @@
 #include "dds/graph.hpp"
 #include "dds/names.hpp"
 #include "dds/subscription.hpp"
-#include "node/transport.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::ros2 {
 

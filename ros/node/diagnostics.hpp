@@ -12,7 +12,7 @@
 
 #include "edged/live/measurement_queue.hpp"
 #include "edged/odometry.hpp"
-#include "node/sensor_input.hpp"
+#include "topics/sensor_input.hpp"
 
 namespace edged::node {
 

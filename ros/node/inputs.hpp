@@ -13,10 +13,10 @@
 
 #include "edged/live/event_thinner.hpp"
 #include "edged/live/measurement_queue.hpp"
-#include "node/clock_check.hpp"
 #include "node/diagnostics.hpp"
-#include "node/sensor_input.hpp"
-#include "node/transport.hpp"
+#include "topics/clock_check.hpp"
+#include "topics/sensor_input.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

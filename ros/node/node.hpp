@@ -7,9 +7,9 @@
 
 #include "edged/io/calibration_data.hpp"
 #include "edged/odometry.hpp"
+#include "node/imu_rate_outputs.hpp"
 #include "node/inputs.hpp"
-#include "node/outputs/imu_rate_outputs.hpp"
-#include "node/outputs/outputs.hpp"
+#include "node/outputs.hpp"
 #include "node/status_log.hpp"
 
 namespace edged::node {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "node/transport.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "node/transport.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::ros1 {
 

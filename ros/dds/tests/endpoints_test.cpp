@@ -13,7 +13,7 @@
 #include "dds/ros2_transport.hpp"
 #include "dds_test_support.hpp"
 #include "edged/core/check.hpp"
-#include "node/sensor_input.hpp"
+#include "topics/sensor_input.hpp"
 
 namespace edged::ros2 {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "dds_test_support.hpp"
-#include "node/outputs/messages.hpp"
+#include "node/messages.hpp"
 
 namespace edged::ros2 {
 namespace {

@@ -13,7 +13,7 @@
 #include "edged/io/core/topic_choice.hpp"
 #include "edged/io/ros/messages/event_packets.hpp"
 #include "edged/measurement.hpp"
-#include "node/transport.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/outputs/pose_outputs.hpp"
+#include "node/pose_outputs.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The occupancy map that the node publishes, as a grid and as voxels; the other topics are tested with their messages.
-#include "node/outputs/outputs.hpp"
+#include "node/outputs.hpp"
 
 #include <gmock/gmock.h>
 #include <octomap/OcTree.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/outputs/map_outputs.hpp"
+#include "node/map_outputs.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

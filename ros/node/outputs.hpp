@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "node/outputs/map_outputs.hpp"
-#include "node/outputs/pose_outputs.hpp"
+#include "node/map_outputs.hpp"
+#include "node/pose_outputs.hpp"
 
 namespace edged::node {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/outputs/messages.hpp"
+#include "node/messages.hpp"
 
 #include <algorithm>
 #include <array>

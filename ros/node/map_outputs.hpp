@@ -7,9 +7,9 @@
 
 #include "edged/live/seen_points.hpp"
 #include "edged/occupancy/occupancy_worker.hpp"
-#include "node/outputs/messages.hpp"
-#include "node/outputs/period.hpp"
-#include "node/transport.hpp"
+#include "node/messages.hpp"
+#include "topics/period.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

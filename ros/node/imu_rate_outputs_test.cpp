@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/outputs/imu_rate_outputs.hpp"
+#include "node/imu_rate_outputs.hpp"
 
 #include <gmock/gmock.h>
 

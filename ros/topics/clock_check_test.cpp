@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/clock_check.hpp"
+#include "topics/clock_check.hpp"
 
 #include <gmock/gmock.h>
 

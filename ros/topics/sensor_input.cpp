@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/sensor_input.hpp"
+#include "topics/sensor_input.hpp"
 
 #include <fmt/format.h>
 

@@ -12,8 +12,8 @@
 #include "edged/autopilot/mavlink_output.hpp"
 #include "edged/autopilot/vehicle_stream.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
-#include "node/outputs/messages.hpp"
-#include "node/transport.hpp"
+#include "node/messages.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

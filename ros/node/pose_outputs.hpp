@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "node/outputs/messages.hpp"
-#include "node/outputs/period.hpp"
-#include "node/transport.hpp"
+#include "node/messages.hpp"
+#include "topics/period.hpp"
+#include "topics/transport.hpp"
 
 namespace edged::node {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "node/outputs/outputs.hpp"
+#include "node/outputs.hpp"
 
 namespace edged::node {
 namespace {
