@@ -239,7 +239,7 @@ class Recordings(WithFlight):
         repairs = json.loads(edged("info", self.flight, "--height", damaged, "--json").stdout)["repairs"]
         self.assertEqual(repairs["height: unreadable line"], 1)
         damaged.write_text("t,altitude\n0.1,1.5\n")
-        self.assert_refused(edged("info", self.flight, "--height", damaged), "baro.txt: line 1", "t[s],height[m]")
+        self.assert_refused(edged("info", self.flight, "--height", damaged), "baro.txt:1:", "t[s],height[m]")
         damaged.write_text("1000.1 1.5\n1000.2 1.5\n")
         self.assert_refused(edged("run", self.flight, "--height", damaged), "baro.txt", "another clock")
 
