@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/config_source.hpp"
 #include "edged/core/check.hpp"
-#include "program/commands.hpp"
-#include "program/program.hpp"
 
 namespace edged {
 namespace {
@@ -24,11 +23,11 @@ struct ConfigOptions {
   bool json = false;
 };
 
-void print_text(const ConfigField& field) {
+std::string text_of(const ConfigField& field) {
   std::string kind = field.type;
   if (field.range != "any") kind += ", " + field.range;
   if (!field.unit.empty()) kind += " " + field.unit;
-  fmt::print("{} = {}\n    {}\n    {}\n", field.key, field.default_value, kind, field.effect);
+  return fmt::format("{} = {}\n    {}\n    {}\n", field.key, field.default_value, kind, field.effect);
 }
 
 /// Words of the keys, separated by dots and underscores: the terms of a search.
@@ -47,9 +46,8 @@ std::vector<std::string> words_of_keys(const ConfigFields& fields) {
 }
 
 [[noreturn]] void refuse_filter(const ConfigFields& fields, const std::string& filter) {
-  const std::string nearest = nearest_name(words_of_keys(fields), filter, typing_errors(filter));
   throw InputError::format("no option's key contains '{}'{}; `edged config` without a word lists them", filter,
-                           did_you_mean(nearest));
+                           did_you_mean(words_of_keys(fields), filter));
 }
 
 int run_config(const ConfigOptions& options) {
@@ -60,11 +58,12 @@ int run_config(const ConfigOptions& options) {
     return kExitOk;
   }
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::string text;
   std::size_t passed_over = 0;
   for (const ConfigField& field : fields.all()) {
     if (field.key.find(options.filter) == std::string::npos) continue;
     const bool shown = !options.filter.empty() || !field.expert;
-    if (!options.json && shown) print_text(field);
+    if (shown) text += text_of(field);
     passed_over += shown ? 0 : 1;
     list.push_back({{"key", field.key},
                     {"type", field.type},
@@ -75,11 +74,8 @@ int run_config(const ConfigOptions& options) {
                     {"expert", field.expert}});
   }
   if (list.empty()) refuse_filter(fields, options.filter);
-  if (options.json) {
-    fmt::print("{}\n", list.dump(2));
-  } else if (passed_over > 0) {
-    fmt::print("and {} for developers of the method: edged config expert\n", passed_over);
-  }
+  if (passed_over > 0) text += fmt::format("and {} for developers of the method: edged config expert\n", passed_over);
+  print_result(options.json, list, text);
   return kExitOk;
 }
 
@@ -91,9 +87,10 @@ void add_config_command(CLI::App& app, std::function<int()>& chosen) {
   config->add_option("FILTER", options->filter,
                      "Show all options whose key contains this text; `expert` shows the expert options");
   CLI::Option* yaml = config->add_flag("--yaml", options->yaml, "Print a complete options file for --config");
-  config->add_flag("--json", options->json, "Print JSON")->excludes(yaml);
-  config->footer("Example:\n  edged config --yaml > mine.yaml   # edit, then: edged run RECORDING --config mine.yaml");
-  config->callback([options, &chosen] { chosen = [options] { return run_config(*options); }; });
+  finish_command(*config, options,
+                 "Example:\n  edged config --yaml > mine.yaml   # edit, then: edged run RECORDING --config mine.yaml",
+                 chosen, run_config);
+  config->get_option("--json")->excludes(yaml);
 }
 
 }  // namespace edged

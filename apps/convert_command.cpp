@@ -10,13 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/io/write_recording.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -42,28 +41,26 @@ std::string left_out_text(const WriteCounts& counts, std::string_view format) {
 
 void print_summary(const ConvertOptions& options, const WritableFormat& format, const WriteCounts& counts,
                    const std::map<std::string, std::size_t>& repairs) {
-  if (options.json) {
-    const nlohmann::ordered_json json = {{"from", options.source.recording},
-                                         {"to", options.target.string()},
-                                         {"format", format.name},
-                                         {"events", counts.events},
-                                         {"frames", counts.frames},
-                                         {"imu", counts.imu},
-                                         {"poses", counts.poses},
-                                         {"external", counts.external},
-                                         {"left_out",
-                                          {{"frames", counts.frames_left_out},
-                                           {"imu", counts.imu_left_out},
-                                           {"poses", counts.poses_left_out},
-                                           {"external", counts.external_left_out}}},
-                                         {"repairs", repairs}};
-    fmt::print("{}\n", json_text(json));
-    return;
-  }
-  fmt::print("{}: {}, {}, {}, {}{}\n{}", options.target.string(), quantity(counts.events, "event"),
-             quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"), quantity(counts.poses, "true pose"),
-             external_text(counts.external), left_out_text(counts, format.name));
-  for (const auto& [kind, count] : repairs) fmt::print("repaired: {} ({})\n", kind, count);
+  const nlohmann::ordered_json json = {{"from", options.source.recording},
+                                       {"to", options.target.string()},
+                                       {"format", format.name},
+                                       {"events", counts.events},
+                                       {"frames", counts.frames},
+                                       {"imu", counts.imu},
+                                       {"poses", counts.poses},
+                                       {"external", counts.external},
+                                       {"left_out",
+                                        {{"frames", counts.frames_left_out},
+                                         {"imu", counts.imu_left_out},
+                                         {"poses", counts.poses_left_out},
+                                         {"external", counts.external_left_out}}},
+                                       {"repairs", repairs}};
+  std::string text = fmt::format("{}: {}, {}, {}, {}{}\n{}", options.target.string(), quantity(counts.events, "event"),
+                                 quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"),
+                                 quantity(counts.poses, "true pose"), external_text(counts.external),
+                                 left_out_text(counts, format.name));
+  for (const auto& [kind, count] : repairs) text += fmt::format("repaired: {} ({})\n", kind, count);
+  print_result(options.json, json, text);
 }
 
 int run_convert(const ConvertOptions& options) {
@@ -74,15 +71,12 @@ int run_convert(const ConvertOptions& options) {
   const Recording recording = open_uncalibrated(source);
   StatusLine status(options.quiet);
   WriteOptions write{.round = options.round};
-  write.progress = [&](Timestamp t) {
-    if (status.due())
-      status.show(progress_text(t, recording.dataset->info(), "converted"), share_done(t, recording.dataset->info()));
-  };
+  write.progress = [&](Timestamp t) { show_progress(status, t, recording.dataset->info(), "converted"); };
   InterruptibleDataset dataset(*recording.dataset);
   const WriteCounts counts = write_recording(dataset, format, options.target, recording.calibration, write);
   status.clear();
   print_summary(options, format, counts, dataset.repairs());
-  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+  return exit_code_of_interrupt();
 }
 
 }  // namespace
@@ -99,13 +93,11 @@ void add_convert_command(CLI::App& app, std::function<int()>& chosen) {
   convert->add_option("--format", options->format, fmt::format("One of {} [by extension]", fmt::join(names, ", ")));
   convert->add_flag("--round", options->round,
                     "Truncate timestamps that are finer than the format can store, instead of refusing them");
-  convert->add_flag("--quiet", options->quiet, "No status line");
-  convert->add_flag("--json", options->json, "Print the summary as JSON");
-  convert->footer(
-      "Examples:\n"
-      "  edged convert flight.aedat4 flight_folder\n"
-      "  edged convert gen3.raw events.dat --geometry 640x480");
-  convert->callback([options, &chosen] { chosen = [options] { return run_convert(*options); }; });
+  finish_command(*convert, options,
+                 "Examples:\n"
+                 "  edged convert flight.aedat4 flight_folder\n"
+                 "  edged convert gen3.raw events.dat --geometry 640x480",
+                 chosen, run_convert);
 }
 
 }  // namespace edged

@@ -48,21 +48,11 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("edged {}", kVersion));
   app.formatter(std::make_shared<WrappedHelp>());
   std::function<int()> chosen;
-  add_run_command(app, chosen);
-  add_info_command(app, chosen);
-  add_show_command(app, chosen);
-  add_doctor_command(app, chosen);
-  add_convert_command(app, chosen);
-  add_calib_command(app, chosen);
-  add_simulate_command(app, chosen);
-  add_eval_command(app, chosen);
-  add_report_command(app, chosen);
-  add_map_command(app, chosen);
-  add_depth_command(app, chosen);
-  add_config_command(app, chosen);
-  add_ros2_command(app, chosen);
-  add_play_command(app, chosen);
-  add_manual_command(app, chosen);
+  for (AddCommand* add :
+       {add_run_command, add_info_command, add_show_command, add_doctor_command, add_convert_command, add_calib_command,
+        add_simulate_command, add_eval_command, add_report_command, add_map_command, add_depth_command,
+        add_config_command, add_ros2_command, add_play_command, add_manual_command})
+    add(app, chosen);
   app.footer(kFooter);  // last, as commands take it over
   return run_program(app, argc, argv, [&] { return chosen(); });
 }

@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/config_source.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/sim/simulator.hpp"
-#include "program/commands.hpp"
-#include "program/program.hpp"
 
 namespace edged {
 namespace {

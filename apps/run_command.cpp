@@ -5,17 +5,17 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
-#include "common/run_source.hpp"
+#include "common/log.hpp"
+#include "common/source.hpp"
 #include "common/text.hpp"
-#include "program/commands.hpp"
+#include "edged/io/core/run_cameras.hpp"
 #include "run/run.hpp"
 #include "run/run_folder.hpp"
 #include "run_outputs.hpp"
@@ -23,7 +23,28 @@
 namespace edged {
 namespace {
 
-int run(RunOptions options, const std::vector<RunOutput>& outputs) {
+/// Opens the recording with the cameras that options.cameras names, else with those of stereo_cameras(), which it puts
+/// there; of a live source, of the simulator, and where not all cameras can be read, with the first of each kind.
+Source open_run_source(SourceOptions& options) {
+  if (!options.cameras.empty() || is_live(options) || simulator_config(options)) return open_source(options);
+  std::optional<HeldWarnings> of_all_cameras;  // which may be opened again, with those of the run: said once then
+  const auto open = [&](const std::vector<std::string>& cameras, bool all) {
+    if (of_all_cameras) of_all_cameras->take();
+    of_all_cameras.reset();
+    if (all) of_all_cameras.emplace();
+    SourceOptions chosen = options;
+    chosen.cameras = cameras;
+    chosen.all_cameras = all;
+    return open_uncalibrated(chosen);
+  };
+  std::vector<std::string> cameras;
+  Recording recording = open_with_stereo_cameras(open, cameras);
+  of_all_cameras.reset();
+  options.cameras = cameras;
+  return calibrated(options, std::move(recording));
+}
+
+int run(RunOptions options) {
   options.live = options.live || is_live(options.source);
   RunConfig config = load_config(options.config);
   config.odometry.map.localize_only = config.odometry.map.localize_only || options.localize_only;
@@ -36,17 +57,18 @@ int run(RunOptions options, const std::vector<RunOutput>& outputs) {
   for (const Modality modality : {Modality::Events, Modality::Frames})
     if (!uses(mode, modality)) source.dataset->leave_out(modality);
   RunContext context(options, std::move(source), mode, config);
-  const RunSummary summary = Run(context, outputs).go();
-  fmt::print("{}", options.json ? json_text(to_json(summary)) + "\n" : to_table(summary));
+  const RunSummary summary = Run(context, run_outputs()).go();
+  print_result(options.json, to_json(summary), to_table(summary));
   for (const std::string& failure : summary.unwritten) spdlog::error(failure);
-  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (interrupt_signal() != 0) return exit_code_of_interrupt();
   if (!summary.unwritten.empty()) return kExitInput;
   if (summary.verdict.contradicted) return kExitNotTrusted;
   return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
 }
 
 /// MORE: options as KEY=VALUE. Another recording is refused with the loop that runs several.
-int run_with(RunOptions options, const std::vector<RunOutput>& outputs) {
+int run_with(const RunOptions& given) {
+  RunOptions options = given;
   for (const std::string& word : options.more)
     if (word.find('=') == std::string::npos)
       throw CLI::ValidationError(
@@ -54,7 +76,7 @@ int run_with(RunOptions options, const std::vector<RunOutput>& outputs) {
                             "for r in {} {}; do edged run \"$r\"; done",
                             shell_word(options.source.recording), shell_word(word)));
   options.config.assignments.insert(options.config.assignments.end(), options.more.begin(), options.more.end());
-  return run(std::move(options), outputs);
+  return run(std::move(options));
 }
 
 }  // namespace
@@ -86,12 +108,10 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
                     "With --map: never change the map, and write poses only while localized in it (option "
                     "map.localize_only)");
   add_archive_option(*run_app, options->archive);
-  const std::vector<RunOutput> outputs = run_outputs();
-  for (const RunOutput& output : outputs)
+  for (const RunOutput& output : run_outputs())
     if (output.add_options) output.add_options(*run_app, options->outputs);
-  run_app->add_flag("--quiet", options->quiet, "No status line");
-  run_app->add_flag("--json", options->json, "Print the summary as JSON");
-  run_app->footer(
+  finish_command(
+      *run_app, options,
       "Examples:\n"
       "  edged run data/boxes_6dof --rig davis240c_ecd\n"
       "  edged run data/MH_01_easy --mode frames --out /tmp/mh01\n"
@@ -100,9 +120,8 @@ void add_run_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged run tcp://127.0.0.1:7777 --calib head.yaml --mavlink serial:/dev/ttyACM0:921600\n"
       "  edged run sim:room:3 --set packets.max_interval_s=0.03 --json --quiet\n"
       "  edged run sim:room:3:duration_s=20,disturbance.kind=lens-covered    # options of `edged simulate --list`\n"
-      "  edged run events.raw --imu imu.csv --calib head.yaml --truth mocap.tum");
-  run_app->callback(
-      [options, outputs, &chosen] { chosen = [options, outputs] { return run_with(*options, outputs); }; });
+      "  edged run events.raw --imu imu.csv --calib head.yaml --truth mocap.tum",
+      chosen, run_with);
 }
 
 }  // namespace edged

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/interrupt.hpp"
-#include "common/numbers.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
@@ -19,7 +19,6 @@
 #include "edged/io/write_recording.hpp"
 #include "edged/sim/simulated_pair.hpp"
 #include "edged/sim/simulator.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -30,8 +29,8 @@ struct SimulateOptions {
   std::optional<double> baseline_m;  ///< of a second camera of each kind
   std::vector<std::string> assignments;
   std::filesystem::path out;
-  bool quiet = false;
-  bool json = false;
+  bool list = false;  ///< prints the options instead
+  bool quiet = false, json = false;
 };
 
 SimulatorConfig load_config(const SimulateOptions& options) {
@@ -55,7 +54,11 @@ Recording make_simulator(const SimulatorConfig& config, const std::optional<doub
 
 int run_simulate(const SimulateOptions& options) {
   catch_interrupts();
-  const SimulatorConfig config = load_config(options);
+  SimulatorConfig config = load_config(options);
+  if (options.list) {
+    fmt::print("{}", ConfigFields::of(config).to_yaml());
+    return kExitOk;
+  }
   const Recording recording = make_simulator(config, options.baseline_m);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path("recordings") / fmt::format("{}_{}", options.preset, config.seed)
@@ -71,32 +74,23 @@ int run_simulate(const SimulateOptions& options) {
   const WriteCounts counts =
       write_recording(dataset, writable_format("ecd", folder), folder, recording.calibration, write);
   status.clear();
-  if (options.json) {
-    const nlohmann::ordered_json json = {{"folder", folder.string()},  {"preset", options.preset},
-                                         {"seed", config.seed},        {"duration_s", config.duration_s},
-                                         {"events", counts.events},    {"frames", counts.frames},
-                                         {"imu", counts.imu},          {"poses", counts.poses},
-                                         {"external", counts.external}};
-    fmt::print("{}\n", json.dump(2));
-  } else {
-    fmt::print("{}: {}events, {}, {}, {}{}\n", folder.string(), si_number(static_cast<double>(counts.events)),
-               quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"),
-               quantity(counts.poses, "true pose"), external_text(counts.external));
-  }
-  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
-}
-
-int list_options(const SimulateOptions& options) {
-  SimulatorConfig config = load_config(options);
-  fmt::print("{}", ConfigFields::of(config).to_yaml());
-  return kExitOk;
+  const nlohmann::ordered_json json = {{"folder", folder.string()},  {"preset", options.preset},
+                                       {"seed", config.seed},        {"duration_s", config.duration_s},
+                                       {"events", counts.events},    {"frames", counts.frames},
+                                       {"imu", counts.imu},          {"poses", counts.poses},
+                                       {"external", counts.external}};
+  print_result(
+      options.json, json,
+      fmt::format("{}: {}events, {}, {}, {}{}\n", folder.string(), si_number(static_cast<double>(counts.events)),
+                  quantity(counts.frames, "frame"), quantity(counts.imu, "IMU sample"),
+                  quantity(counts.poses, "true pose"), external_text(counts.external)));
+  return exit_code_of_interrupt();
 }
 
 }  // namespace
 
 void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<SimulateOptions>();
-  const auto list = std::make_shared<bool>(false);
   CLI::App* simulate = app.add_subcommand("simulate", "Make a recording with ground truth: events, frames and IMU");
   simulate->add_option("--preset", options->preset, "What is simulated: see below")
       ->type_name("PRESET")
@@ -111,10 +105,9 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->check(positive_number());
   simulate->add_option("--set", options->assignments, "One option as key=value; may be repeated")
       ->allow_extra_args(false);
-  simulate->add_flag("--list", *list, "Print every option as chosen, with unit and effect, instead");
+  simulate->add_flag("--list", options->list, "Print every option as chosen, with unit and effect, instead");
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
-  simulate->add_flag("--quiet", options->quiet, "No status line");
-  simulate->add_flag("--json", options->json, "Print the summary as JSON");
+  finish_command(*simulate, options, "", chosen, run_simulate);
   simulate->footer([] {
     std::string presets = "Presets:\n";
     for (const std::string& name : simulator_presets())
@@ -124,9 +117,6 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
            "  edged simulate --preset room --seed 3 --duration 20 --out /tmp/flight && edged run /tmp/flight\n"
            "  edged simulate --baseline 0.1 --out /tmp/pair    # events, events2, frames, frames2\n"
            "  edged simulate --set disturbance.kind=lens-covered --set disturbance.at_s=6 --out /tmp/covered";
-  });
-  simulate->callback([options, list, &chosen] {
-    chosen = [options, list] { return *list ? list_options(*options) : run_simulate(*options); };
   });
 }
 

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calib_check.hpp"
+#include "calib/calib.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <utility>
 
+#include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "edged/checks/calibration_fit.hpp"
@@ -18,7 +17,6 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "program/commands.hpp"
 #include "run/estimated_calibration.hpp"
 #include "run/run_statistics.hpp"
 
@@ -76,9 +74,7 @@ class CheckRun {
       rig_ = odometry_.rig();
       found_ = compare();
     }
-    if (status_.due())
-      status_.show(progress_text(step.t, source_.dataset->info(), "checked"),
-                   share_done(step.t, source_.dataset->info()));
+    show_progress(status_, step.t, source_.dataset->info(), "checked");
     return interrupt_signal() == 0;
   }
 
@@ -106,12 +102,12 @@ bool estimated(const CalibrationFit& fit) {
 
 /// If the run estimates a wrong calibration, it is repeated from that estimate: measurements processed with the wrong
 /// one bias it by up to 1.6 ms.
-CalibrationRun check(const CalibCheckOptions& options, Source& source, Mode mode) {
+CalibrationRun check(const CalibOptions& options, const SourceOptions& reopened, Source& source, Mode mode) {
   CalibrationRun first = calibrate_by_run(source.calibration.rig, source, mode, options.quiet);
   const bool off = std::ranges::any_of(first.fit.cameras, [](const CameraFit& camera) { return is_off(camera.found); });
-  if (!off || interrupt_signal() != 0 || is_live(options.source)) return first;
-  source.dataset = open_uncalibrated(options.source).dataset;
-  CalibrationRun second = calibrate_by_run(first.found, source, mode, options.quiet);
+  if (!off || interrupt_signal() != 0 || is_live(reopened)) return first;
+  source.dataset = open_uncalibrated(reopened).dataset;
+  CalibrationRun second = calibrate_by_run(first.estimated, source, mode, options.quiet);
   return estimated(second.fit) ? second : first;
 }
 
@@ -119,8 +115,7 @@ int exit_code_of(Fit fit) {
   return fit == Fit::Fits ? kExitOk : fit == Fit::DoesNotFit ? kExitNotTrusted : kExitNeverGood;
 }
 
-std::string next_line(const CalibCheckOptions& options, Fit fit) {
-  SourceOptions whole = options.source;
+std::string next_line(const CalibOptions& options, SourceOptions whole, Fit fit) {
   whole.duration_s.reset();
   if (!options.out.empty()) whole.calib = options.out;
   const bool usable = fit == Fit::Fits || !options.out.empty();
@@ -135,17 +130,18 @@ CalibrationRun calibrate_by_run(const Rig& begin, Source& source, Mode mode, boo
   return {run.fit(), run.rig(), run.covariances()};
 }
 
-int check_calibration(CalibCheckOptions options) {
+int check_calibration(const CalibOptions& options) {
   catch_interrupts();
   if (!options.out.empty()) check_writable(options.out, "--out");
-  if (!options.source.piece.to_s && !options.source.duration_s) options.source.duration_s = kCheckedSeconds;
-  Source source = open_source(options.source);
+  SourceOptions checked = options.source_with_file();
+  if (!checked.piece.to_s && !checked.duration_s) checked.duration_s = kCheckedSeconds;
+  Source source = open_source(checked);
   const Mode mode = choose_mode(options.mode, source.dataset->info());
   match_cameras(source, mode);
-  const auto [fit, found, covariances] = check(options, source, mode);
-  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
-  fmt::print("{}", options.json ? json_text(to_json(fit)) + "\n" : to_text(fit) + next_line(options, fit.fit));
-  if (!options.out.empty()) write_file(options.out, to_yaml(with_estimated(source.calibration, found)));
+  const auto [fit, estimated, covariances] = check(options, checked, source, mode);
+  if (interrupt_signal() != 0) return exit_code_of_interrupt();
+  print_result(options.json, to_json(fit), to_text(fit) + next_line(options, checked, fit.fit));
+  if (!options.out.empty()) write_file(options.out, to_yaml(with_estimated(source.calibration, estimated)));
   return exit_code_of(fit.fit);
 }
 

@@ -3,8 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,37 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "calib/calib_check.hpp"
-#include "calib/calib_imu_noise.hpp"
-#include "calib/calib_refine.hpp"
-#include "calib/calib_target.hpp"
-#include "calib/calib_template.hpp"
+#include "calib/calib.hpp"
+#include "common/command.hpp"
 #include "common/text.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
 
 using nlohmann::ordered_json;
-
-struct CalibOptions {
-  std::string camera_of_template;
-  std::string file;
-  std::filesystem::path imu, out;
-  std::vector<std::string> cameras;  ///< NAME=events|frames|both[:NEW_NAME]
-  SourceOptions recording;           ///< to check it against
-  std::vector<std::string> refined;  ///< recordings of --refine
-  std::string mode = "auto";
-  bool quiet = false, json = false;
-  CalibTargetOptions target;
-  std::filesystem::path printed_target;
-  bool imu_noise = false;  ///< FILE is a recording at rest
-};
 
 /// What the user says of a camera.
 struct CameraChoice {
@@ -164,77 +144,32 @@ int write_template(const CalibOptions& options) {
   return kExitOk;
 }
 
-/// FILE is a calibration as for --calib or --rig.
-void take_file(const std::string& file, SourceOptions& source) {
-  if (std::filesystem::exists(file)) {
-    source.calib = file;
-  } else if (!file.empty()) {
-    source.rig = file;
-  }
-}
-
-/// --imu has samples.
-int run_check(const CalibOptions& options) {
-  CalibCheckOptions check{options.recording, options.mode, options.out, options.quiet, options.json};
-  check.source.imu = options.imu;
-  take_file(options.file, check.source);
-  return check_calibration(std::move(check));
-}
-
-/// FILE is the recording.
-int run_target(const CalibOptions& options) {
-  CalibTargetOptions target = options.target;
-  const std::vector<std::string> cameras = target.source.cameras;
-  target.source = options.recording;
-  target.source.recording = options.file, target.source.imu = options.imu, target.source.cameras = cameras;
-  target.mode = options.mode, target.out = options.out;
-  target.quiet = options.quiet, target.json = options.json;
-  return calibrate_from_target(std::move(target));
-}
-
 int run_calib(const CalibOptions& options) {
   Calibration calibration = load_chosen(options);
   if (!options.out.empty()) {
     calibration.rig.name = options.out.stem().string();  // found as by --rig
     write_new_file(options.out, to_yaml(calibration));
   }
-  if (options.json) {
-    fmt::print("{}\n", calibration_json(calibration).dump(2));
-  } else {
-    fmt::print("{}", describe(calibration));
-    const std::string file = options.out.empty() ? options.file : options.out.string();
-    if (!options.out.empty() && !calibration.has_extrinsics)
-      tell_to_fill_in(options.out);
-    else
-      fmt::print("next: edged calib {} --check RECORDING\n", shell_word(file));
-  }
+  print_result(options.json, calibration_json(calibration), describe(calibration));
+  if (options.json) return kExitOk;
+  const std::string file = options.out.empty() ? options.file : options.out.string();
+  if (!options.out.empty() && !calibration.has_extrinsics)
+    tell_to_fill_in(options.out);
+  else
+    fmt::print("next: edged calib {} --check RECORDING\n", shell_word(file));
   return kExitOk;
-}
-
-int run_refine(const CalibOptions& options) {
-  CalibRefineOptions refine{options.refined, options.recording, options.mode, options.out, options.quiet, options.json};
-  refine.source.imu = options.imu;
-  take_file(options.file, refine.source);
-  return refine_calibration(refine);
-}
-
-int run_imu_noise(const CalibOptions& options) {
-  CalibImuNoiseOptions noise{options.recording, options.out, options.quiet, options.json};
-  noise.source.recording = options.file;
-  noise.source.imu = options.imu;
-  return measure_imu_noise(noise);
 }
 
 /// --check, --refine, and the options that need a recording: for one of them or for --target.
 std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& options) {
   calib.add_option(
-      "--check", options.recording.recording,
+      "--check", options.source.recording,
       fmt::format(
           "Whether FILE, or the calibration of the recording, fits this recording: a run over its first {:.0f} s "
           "[else --from, --duration, --to], whose estimate of rotation and clock of each camera is compared with it",
           kCheckedSeconds));
   const std::size_t before = calib.get_options().size();
-  add_reading_options(calib, options.recording);
+  add_reading_options(calib, options.source);
   calib.add_option("--mode", options.mode, "Sensors used beside the IMU; auto: all that are present")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}))
       ->capture_default_str();
@@ -278,14 +213,31 @@ void check_company(const CLI::App& calib, const std::vector<CLI::Option*>& of_re
 
 int run_chosen(const CalibOptions& options) {
   if (!options.camera_of_template.empty()) return write_template(options);
-  if (!options.printed_target.empty()) return print_target(options.target.target, options.printed_target);
-  if (!options.target.target.kind.empty()) return run_target(options);
-  if (!options.refined.empty()) return run_refine(options);
-  if (options.imu_noise) return run_imu_noise(options);
-  return options.recording.recording.empty() ? run_calib(options) : run_check(options);
+  if (!options.target.print.empty()) return print_target(options);
+  if (!options.target.kind.empty()) return calibrate_from_target(options);
+  if (!options.refined.empty()) return refine_calibration(options);
+  if (options.imu_noise) return measure_imu_noise(options);
+  return options.source.recording.empty() ? run_calib(options) : check_calibration(options);
 }
 
 }  // namespace
+
+SourceOptions CalibOptions::source_with_file() const {
+  SourceOptions all = source;
+  all.imu = imu;
+  if (std::filesystem::exists(file))
+    all.calib = file;
+  else if (!file.empty())
+    all.rig = file;
+  return all;
+}
+
+SourceOptions CalibOptions::source_of_file() const {
+  SourceOptions all = source;
+  all.recording = file;
+  all.imu = imu;
+  return all;
+}
 
 void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<CalibOptions>();
@@ -318,7 +270,7 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
   add_target_options(*calib, options->target);
   calib->get_option("--target")->excludes(fresh)->excludes(check)->excludes(refine)->excludes(sees);
   CLI::Option* print = calib
-                           ->add_option("--print-target", options->printed_target,
+                           ->add_option("--print-target", options->target.print,
                                         "Instead: write the target to this file, svg or pdf, in true size")
                            ->excludes(file)
                            ->excludes(check);

@@ -1,24 +1,21 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calib_imu_noise.hpp"
+#include "calib/calib.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
-#include "common/status_line.hpp"
 #include "edged/checks/statistics/allan_deviation.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -180,25 +177,22 @@ ordered_json json_of(const RestingImu& imu, const std::vector<SignalNoise>& axes
 void read_all(Dataset& dataset, RestingImu& imu, bool quiet) {
   dataset.leave_out(Modality::Events);
   dataset.leave_out(Modality::Frames);
-  StatusLine status(quiet);
-  InterruptibleDataset recording(dataset);
-  while (const std::optional<Measurement> measurement = recording.next()) {
-    if (const auto* sample = std::get_if<ImuSample>(&*measurement)) imu.add(*sample);
-    if (const auto* sample = std::get_if<ImuSample>(&*measurement); sample && status.due())
-      status.show(progress_text(sample->t, dataset.info(), "read"), share_done(sample->t, dataset.info()));
-  }
+  read_through(dataset, quiet, "read", [&imu](const Measurement& measurement) {
+    if (const auto* sample = std::get_if<ImuSample>(&measurement)) imu.add(*sample);
+    return true;
+  });
 }
 
 }  // namespace
 
-int measure_imu_noise(const CalibImuNoiseOptions& options) {
+int measure_imu_noise(const CalibOptions& options) {
   catch_interrupts();
   if (!options.out.empty()) check_writable(options.out, "--out");
-  const Recording recording = open_uncalibrated(options.source);
+  const Recording recording = open_uncalibrated(options.source_of_file());
   const std::string& name = recording.dataset->info().name;
   RestingImu imu;
   read_all(*recording.dataset, imu, options.quiet);
-  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (interrupt_signal() != 0) return exit_code_of_interrupt();
   if (imu.length_s() < kShortest_s || imu.axes().empty())
     throw InputError::format(
         "{}: {:.1f} s of IMU samples; record {:.0f} s at rest, for the random walk an hour or more", name,
@@ -211,7 +205,7 @@ int measure_imu_noise(const CalibImuNoiseOptions& options) {
                                kAxisNames[static_cast<std::size_t>(axis)]);
     axes.push_back(fit_noise(points));
   }
-  fmt::print("{}", options.json ? json_text(json_of(imu, axes)) + "\n" : text_of(imu, axes));
+  print_result(options.json, json_of(imu, axes), text_of(imu, axes));
   if (options.out.empty()) return kExitOk;
   write_file(options.out, kalibr_yaml(imu, axes));
   if (!options.json)

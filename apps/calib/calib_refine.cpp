@@ -1,26 +1,23 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calib_refine.hpp"
+#include "calib/calib.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
-#include "calib/calib_check.hpp"
+#include "calib/calib.hpp"
+#include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
 #include "common/text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/calibration_prior.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "program/commands.hpp"
 #include "run/estimated_calibration.hpp"
 
 namespace edged {
@@ -31,11 +28,11 @@ using nlohmann::ordered_json;
 /// What was found in one recording.
 struct RecordingEstimate {
   std::string recording;
-  std::string why_not;                                     ///< there is no estimate; empty where there is one
+  std::string why_not;                                     ///< why there is no estimate; empty where there is one
   std::map<std::string, CorrectionEstimate> cameras = {};  ///< by name
 };
 
-/// Of all recordings together.
+/// A camera as estimated from all recordings together.
 struct RefinedCamera {
   RigCamera given, found;
   CorrectionEstimate estimate;
@@ -63,7 +60,7 @@ RecordingEstimate estimate_of(const std::string& recording, Source& source, Mode
     result.why_not = run.fit.cameras.empty() ? "there was no estimate" : run.fit.cameras.front().why;
     return result;
   }
-  for (const RigCamera& found : run.found.cameras)
+  for (const RigCamera& found : run.estimated.cameras)
     if (const auto P = run.covariances.find(found.name); P != run.covariances.end())
       result.cameras[found.name] = {correction_between(source.calibration.rig.camera(found.name), found), P->second};
   return result;
@@ -165,24 +162,24 @@ void take_begin(Begin& begin, const Source& source, Mode mode, const std::string
 
 }  // namespace
 
-int refine_calibration(const CalibRefineOptions& options) {
+int refine_calibration(const CalibOptions& options) {
   catch_interrupts();
   if (options.out.empty()) throw InputError("--refine: give the file for the calibration with --out FILE");
   check_writable(options.out, "--out");
   Begin begin;
   std::vector<RecordingEstimate> all;
-  for (const std::string& recording : options.recordings) {
-    SourceOptions one = options.source;
+  SourceOptions one = options.source_with_file();
+  for (const std::string& recording : options.refined) {
     one.recording = recording;
     Source source = open_source(one);
     const Mode mode = choose_mode(options.mode, source.dataset->info());
     match_cameras(source, mode);
     take_begin(begin, source, mode, recording);
     all.push_back(estimate_of(recording, source, mode, options.quiet));
-    if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+    if (interrupt_signal() != 0) return exit_code_of_interrupt();
   }
   const std::vector<RefinedCamera> refined = combine(all, begin.used, begin.mode);
-  fmt::print("{}", options.json ? json_text(json_of(all, refined)) + "\n" : text_of(all, refined));
+  print_result(options.json, json_of(all, refined), text_of(all, refined));
   if (refined.empty()) return kExitNeverGood;
   Rig found;
   for (const RefinedCamera& camera : refined) found.cameras.push_back(camera.found);

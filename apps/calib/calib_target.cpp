@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/calib_target.hpp"
+#include "calib/calib.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -12,10 +11,9 @@
 #include <utility>
 
 #include "calib/target_result.hpp"
+#include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
-#include "common/numbers.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/calibrate/collector.hpp"
@@ -25,7 +23,6 @@
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/target/print.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -80,7 +77,7 @@ void check_cameras(const std::vector<std::string>& wanted, const DatasetInfo& in
   }
 }
 
-CollectorOptions collector_options(const CalibTargetOptions& options, const Recording& recording) {
+CollectorOptions collector_options(const CalibOptions& options, const Recording& recording) {
   CollectorOptions out;
   out.frames = options.mode != "events";
   out.events = options.mode != "frames" && recording.dataset->info().has_events;
@@ -112,10 +109,10 @@ std::filesystem::path beside(const std::filesystem::path& out, const std::string
 }
 
 /// --out in the format that was asked for; of OpenCV's one file a camera. Returns what has been written.
-std::vector<std::string> write_calibration(const CalibTargetOptions& options, const Calibration& calibration) {
-  if (options.format == "kalibr") {
+std::vector<std::string> write_calibration(const CalibOptions& options, const Calibration& calibration) {
+  if (options.target.format == "kalibr") {
     write_file(options.out, to_kalibr_yaml(calibration, true));
-  } else if (options.format == "opencv") {
+  } else if (options.target.format == "opencv") {
     std::vector<std::string> files;
     for (const RigCamera& camera : calibration.rig.cameras) {
       const bool alone = calibration.rig.cameras.size() == 1;
@@ -130,45 +127,40 @@ std::vector<std::string> write_calibration(const CalibTargetOptions& options, co
   return {options.out.string()};
 }
 
-void tell(const CalibTargetOptions& options, const TargetCalibration& result, const Calibration& calibration) {
-  if (options.json) {
-    fmt::print("{}\n", json_text(to_json(result)));
-  } else {
-    fmt::print("{}", to_text(result));
-  }
-  std::filesystem::path report = options.report;
+void print_calibration(const CalibOptions& options, const TargetCalibration& result, const Calibration& calibration) {
+  print_result(options.json, to_json(result), to_text(result));
+  std::filesystem::path report = options.target.report;
   if (report.empty() && !options.out.empty()) report = beside(options.out, ".html");
   if (!report.empty()) write_file(report, target_page(result));
   if (options.out.empty()) return;
   const std::vector<std::string> files = write_calibration(options, calibration);
   if (options.json) return;
   fmt::print("{:<11} {}, {}\n", "written", fmt::join(files, ", "), report.string());
-  if (!result.fit.has_imu && result.cameras.size() > 1 && options.format == "edged")
+  if (!result.fit.has_imu && result.cameras.size() > 1 && options.target.format == "edged")
     fmt::print(
         "{:<11} the poses of the cameras to each other are not in this file, as it has them to the IMU: --format "
         "kalibr\n",
         "note");
-  if (result.fit.has_imu && options.format != "opencv")
+  if (result.fit.has_imu && options.target.format != "opencv")
     fmt::print("{:<11} edged calib {} --check RECORDING\n", "next", shell_word(files.front()));
 }
 
 }  // namespace
 
-void add_target_options(CLI::App& calib, CalibTargetOptions& options) {
+void add_target_options(CLI::App& calib, TargetOptions& options) {
   calib
-      .add_option("--target", options.target.kind,
+      .add_option("--target", options.kind,
                   "Instead: FILE is a recording of this target, from which lenses, poses and clocks of all cameras are "
                   "calibrated, and the IMU's")
       ->check(CLI::IsMember({"checkerboard", "aprilgrid", "charuco"}));
-  calib.add_option("--rows", options.target.rows,
+  calib.add_option("--rows", options.rows,
                    "Of the target: of tags, of inner corners of a checkerboard, of squares of a charuco [6]");
-  calib.add_option("--columns", options.target.columns,
-                   "Of the target, likewise [6, 9 of a checkerboard, 8 of a charuco]");
+  calib.add_option("--columns", options.columns, "Of the target, likewise [6, 9 of a checkerboard, 8 of a charuco]");
   calib.add_option(
-      "--size", options.target.size_mm,
+      "--size", options.size_mm,
       "Of the target: side of a tag or square as it was measured [mm] [50, 30 of a checkerboard, 40 of a charuco]");
   calib.add_option(
-      "--ratio", options.target.ratio,
+      "--ratio", options.ratio,
       "Of the target: gap over side of a tag (Kalibr's tagSpacing) [0.3]; charuco: marker over square [0.75]");
   calib.add_option("--lens", options.lens, "With --target: model of the lenses")
       ->check(CLI::IsMember(lens_names()))
@@ -177,14 +169,16 @@ void add_target_options(CLI::App& calib, CalibTargetOptions& options) {
       .add_option("--format", options.format, "Of --out with --target: edged, kalibr (camchain) or opencv (intrinsics)")
       ->check(CLI::IsMember({"edged", "kalibr", "opencv"}))
       ->capture_default_str();
-  calib.add_option("--cameras", options.source.cameras, "With --target: cameras to read, such as cam0,cam1 [all]")
+  calib.add_option("--cameras", options.cameras, "With --target: cameras to read, such as cam0,cam1 [all]")
       ->delimiter(',')
       ->allow_extra_args(false);
   calib.add_flag("--no-imu", options.no_imu, "With --target: without the IMU, cameras alone");
   calib.add_option("--report", options.report, "With --target: page with coverage and residuals [beside --out]");
 }
 
-int print_target(const TargetOptions& target, const std::filesystem::path& file) {
+int print_target(const CalibOptions& options) {
+  const TargetOptions& target = options.target;
+  const std::filesystem::path& file = target.print;
   if (target.kind.empty())
     throw InputError("--print-target: say which with --target checkerboard, aprilgrid or charuco");
   const std::string ending = file.extension().string();
@@ -198,36 +192,38 @@ int print_target(const TargetOptions& target, const std::filesystem::path& file)
   return kExitOk;
 }
 
-int calibrate_from_target(CalibTargetOptions options) {
+int calibrate_from_target(const CalibOptions& options) {
   catch_interrupts();
   const auto begin = std::chrono::steady_clock::now();
   if (!options.out.empty()) check_writable(options.out, "--out");
   TargetCalibration result;
   result.target = spec_of(options.target);
-  options.source.all_cameras = options.source.cameras.empty();
-  const Recording recording = open_uncalibrated(options.source);
+  SourceOptions source = options.source_of_file();
+  source.cameras = options.target.cameras;
+  source.all_cameras = source.cameras.empty();
+  const Recording recording = open_uncalibrated(source);
   result.recording = recording.dataset->info().name;
-  check_cameras(options.source.cameras, recording.dataset->info());
+  check_cameras(source.cameras, recording.dataset->info());
   StatusLine status(options.quiet);
   ViewCollector collector(result.target, collector_options(options, recording));
   collect(*recording.dataset, collector, status);
-  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (interrupt_signal() != 0) return exit_code_of_interrupt();
   const std::vector<TargetViews> cameras = collector.cameras();
   if (cameras.empty())
     throw InputError::format("{}: there are no pictures and no events; check --mode and --cameras", result.recording);
-  fit_lenses(result, cameras, collector, find_lens_model(options.lens)->model, status);
+  fit_lenses(result, cameras, collector, find_lens_model(options.target.lens)->model, status);
   const bool known_noise = recording.calibration && recording.calibration->has_imu_noise;
   const ImuNoise noise = known_noise ? recording.calibration->imu : ImuNoise();
   const std::vector<ImuSample> none;
   const RigFitOptions rig_options{.progress = [&status](int round) {
     status.show(fmt::format("all cameras, motion and IMU: round {}", round + 1));
   }};
-  const bool use_imu = !options.no_imu && !collector.imu().empty();
+  const bool use_imu = !options.target.no_imu && !collector.imu().empty();
   result.fit = fit_rig(result.cameras, collector.layout(), use_imu ? collector.imu() : none, noise, rig_options);
   status.clear();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string name = options.out.empty() ? result.recording : options.out.stem().string();
-  tell(options, result, to_calibration(result, name, known_noise ? &noise : nullptr));
+  print_calibration(options, result, to_calibration(result, name, known_noise ? &noise : nullptr));
   return kExitOk;
 }
 

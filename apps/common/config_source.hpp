@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/cli_fwd.hpp"
+#include "common/cli.hpp"
 #include "edged/autopilot/autopilot_config.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/options.hpp"

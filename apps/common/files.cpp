@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/image_codec.hpp"
@@ -16,15 +17,24 @@ namespace {
 
 std::string reason() { return std::generic_category().message(errno); }
 
-}  // namespace
-
-std::filesystem::path part_of(std::filesystem::path file) { return file += ".part"; }
-
 std::ofstream open_for_writing(const std::filesystem::path& file) {
   std::ofstream out(file);
   if (!out) throw InputError::format("{}: cannot be written: {}", file.string(), reason());
   return out;
 }
+
+}  // namespace
+
+TableFile::TableFile(std::filesystem::path file, const std::string& heading)
+    : file_(std::move(file)), out_(open_for_writing(file_)) {
+  add(heading);  // a run without a line leaves a readable table, too
+}
+
+void TableFile::add(const std::string& line) {
+  if (!(out_ << line).flush()) throw InputError::format("{}: cannot be written; is the disk full?", file_.string());
+}
+
+std::filesystem::path part_of(std::filesystem::path file) { return file += ".part"; }
 
 void write_file(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path part = part_of(file);

@@ -17,8 +17,17 @@ void write_file(const std::filesystem::path& file, const std::string& content);
 /// The temporary file of write_file.
 std::filesystem::path part_of(std::filesystem::path file);
 
-/// Throws InputError if the file cannot be written.
-std::ofstream open_for_writing(const std::filesystem::path& file);
+/// A table that grows: it consists of complete lines, whenever the program ends.
+class TableFile {
+ public:
+  /// Both throw InputError if the file cannot be written.
+  TableFile(std::filesystem::path file, const std::string& heading);
+  void add(const std::string& line);
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+};
 
 /// Throws InputError, with the option, if the file cannot be written. To be called before a long run whose result goes
 /// to the file.
@@ -27,7 +36,7 @@ void check_writable(const std::filesystem::path& file, const char* option);
 /// Throws InputError, with the option, if the folder is there and not empty.
 void check_empty(const std::filesystem::path& folder, const char* option);
 
-/// Both throw InputError, which names --out, if folder or file cannot be written.
+/// Make a folder, and write an image there. Throw InputError, which names --out, if they cannot be written.
 void make_picture_folder(const std::filesystem::path& folder);
 void write_picture(const std::filesystem::path& file, const cv::Mat& image);
 

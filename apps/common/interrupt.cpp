@@ -4,6 +4,8 @@
 
 #include <csignal>
 
+#include "common/cli.hpp"
+
 namespace edged {
 namespace {
 
@@ -25,5 +27,7 @@ void catch_interrupts() {
 }
 
 int interrupt_signal() { return caught_signal; }
+
+int exit_code_of_interrupt() { return caught_signal == 0 ? kExitOk : kExitSignalBase + caught_signal; }
 
 }  // namespace edged

@@ -14,6 +14,9 @@ void catch_interrupts();
 /// The received signal, or 0.
 int interrupt_signal();
 
+/// The exit status of a command that ends after reading: kExitOk, or that of the received signal.
+int exit_code_of_interrupt();
+
 /// A data set that ends after an interrupt by the user.
 class InterruptibleDataset final : public Dataset {
  public:

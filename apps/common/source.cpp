@@ -5,7 +5,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +12,7 @@
 #include <utility>
 
 #include "common/interrupt.hpp"
-#include "common/numbers.hpp"
+#include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
@@ -39,12 +38,6 @@ std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
   if (!options.calib.empty()) return load_calibration(options.calib);
   if (!options.rig.empty()) return load_rig(options.rig);
   return std::nullopt;
-}
-
-std::string rig_list() {
-  std::string list;
-  for (const std::string& name : known_rigs()) list += (list.empty() ? "" : ", ") + name;
-  return list;
 }
 
 /// ROLE=NAME of each --topic.
@@ -113,80 +106,17 @@ Recording open_with_files(const SourceOptions& options) {
 
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
   if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
-  const std::vector<std::string> parts = CLI::detail::split(options.recording.substr(kSimulatorPrefix.size()), ':');
+  const std::vector<std::string> parts = split(options.recording.substr(kSimulatorPrefix.size()), ":");
   SimulatorConfig config = simulator_preset(parts.front());
   ConfigFields fields = ConfigFields::of(config);
   for (const std::string& part : std::span(parts).subspan(1)) {
     if (part.find('=') == std::string::npos) {
       fields.set("seed", part);
     } else {
-      for (const std::string& assignment : CLI::detail::split(part, ',')) fields.set(assignment);
+      for (const std::string& assignment : split(part, ",")) fields.set(assignment);
     }
   }
   return config;
-}
-
-void add_reading_options(CLI::App& command, SourceOptions& options) {
-  CLI::Option* rig = command.add_option("--rig", options.rig, "Name of a calibration that ships with the program");
-  command.add_option("--calib", options.calib, "Calibration file or folder")->excludes(rig);
-  command.add_option("--geometry", options.geometry,
-                     "Size of the event sensor, WIDTHxHEIGHT [px], for files that do not contain it");
-  command.add_option("--time-unit", options.time_unit, "Unit of the timestamps in a plain event file [detected]")
-      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-  command
-      .add_option(
-          "--imu-clock-rate", options.imu_clock_rate,
-          "How many times as fast as the other sensors' the IMU's clock runs, as `edged doctor` says: its stamps "
-          "are corrected from the first one on")
-      ->check(CLI::Range(0.1, 10.0));
-  command
-      .add_option("--topic", options.topics,
-                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height, "
-                  "velocity, or the name of a camera; NAME none leaves it out; may be repeated "
-                  "[of several cameras the topics in the calibration (rostopic), else by name; else the only topic of "
-                  "a fitting type]")
-      ->allow_extra_args(false);
-  command
-      .add_option("--from,--start", options.piece.from_s, "Skip what comes earlier [s from the start of the recording]")
-      ->check(non_negative_number());
-  CLI::Option* to =
-      command.add_option("--to", options.piece.to_s, "Stop at this time [s from the start of the recording]");
-  to->check(non_negative_number());
-  command.add_option("--duration", options.duration_s, "Stop this long after --from [s]")
-      ->check(positive_number())
-      ->excludes(to);
-  command
-      .add_option("--dim-frames", options.dim_frames,
-                  "Darken the frames by this factor, with the noise of their camera: 0.06 leaves about 20 grey levels")
-      ->check(CLI::Range(1e-3, 1.0))
-      ->group("");  // for experiments
-}
-
-void add_cameras_option(CLI::App& command, SourceOptions& options, bool all) {
-  options.all_cameras = all;
-  command
-      .add_option(
-          "--cameras", options.cameras,
-          fmt::format("Names of the cameras to read, separated by commas [{}]", all ? "all" : "the first of each kind"))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-}
-
-void add_source_options(CLI::App& command, SourceOptions& options) {
-  command
-      .add_option("RECORDING", options.recording,
-                  "Folder or file (the format is detected), tcp://HOST:PORT[,PORT...] of a DV server, or "
-                  "sim:PRESET[:SEED][:KEY=VALUE,...] of the simulator")
-      ->required();
-  command.add_option("--imu", options.imu,
-                     "IMU samples from a csv or txt on the recording's clock, instead of its own; columns and units by "
-                     "the names in its first line, else found");
-  for (const ExternalSensor& sensor : external_sensors())
-    command.add_option(fmt::format("--{}", sensor.name), options.external[std::string(sensor.name)],
-                       fmt::format("{}: samples from a csv or txt on the recording's clock, lines of `{}` or columns "
-                                   "by the names in its first line",
-                                   sensor.what, layout_of(sensor)));
-  add_reading_options(command, options);
 }
 
 Recording open_uncalibrated(const SourceOptions& options) {
@@ -223,7 +153,7 @@ Source calibrated(const SourceOptions& options, Recording recording) {
   if (!recording.calibration)
     throw InputError::format(
         "{}: has no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE", options.recording,
-        rig_list());
+        fmt::join(known_rigs(), ", "));
   if (!recording.calibration->has_extrinsics)
     throw InputError::format(
         "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
@@ -237,31 +167,6 @@ Source calibrated(const SourceOptions& options, Recording recording) {
 
 OwnTruth read_truth(const Dataset& dataset) try { return {dataset.ground_truth(), ""}; } catch (const InputError& e) {
   return {std::nullopt, e.what()};
-}
-
-std::string command_line(const std::string& command, const SourceOptions& source) {
-  std::string line = fmt::format("edged {} {}", command, shell_word(source.recording));
-  const auto add = [&line](const std::string& name, const std::string& value) {
-    if (!value.empty()) line += fmt::format(" {} {}", name, shell_word(value));
-  };
-  add("--rig", source.rig);
-  add("--calib", source.calib.string());
-  add("--imu", source.imu.string());
-  if (source.imu_clock_rate != 1.0) add("--imu-clock-rate", fmt::format("{}", source.imu_clock_rate));
-  for (const auto& [name, file] : source.external) add("--" + name, file.string());
-  add("--geometry", source.geometry);
-  add("--time-unit", source.time_unit);
-  if (!source.truth.empty()) add("--truth", source.truth.string());
-  for (const std::string& topic : source.topics) add("--topic", topic);
-  if (!source.cameras.empty()) {
-    const bool run = command == "run";
-    add(run ? "--set" : "--cameras", fmt::format("{}{}", run ? "cameras=" : "", fmt::join(source.cameras, ",")));
-  }
-  if (source.piece.from_s > 0.0) add("--from", fmt::format("{}", source.piece.from_s));
-  if (source.piece.to_s) add("--to", fmt::format("{}", *source.piece.to_s));
-  if (source.duration_s) add("--duration", fmt::format("{}", *source.duration_s));
-  if (source.dim_frames) add("--dim-frames", fmt::format("{}", *source.dim_frames));
-  return line;
 }
 
 std::optional<double> cameras_start_after_s(const SourceOptions& options) {
@@ -285,6 +190,16 @@ double later_start_s(double start_s) { return std::floor(10.0 * start_s) / 10.0;
 Finding cameras_start_later(double start_s) {
   return {Severity::Error, fmt::format("cameras start at {:.1f} s", start_s),
           fmt::format("use --start {:g}", later_start_s(start_s))};
+}
+
+void read_through(Dataset& dataset, bool quiet, std::string_view what,
+                  const std::function<bool(const Measurement&)>& use) {
+  StatusLine status(quiet);
+  InterruptibleDataset recording(dataset);
+  while (const std::optional<Measurement> measurement = recording.next()) {
+    if (!use(*measurement)) return;
+    if (const auto t = last_stamp(*measurement)) show_progress(status, *t, dataset.info(), what);
+  }
 }
 
 void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted) {

@@ -5,13 +5,15 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "common/cli_fwd.hpp"
+#include "common/cli.hpp"
 #include "edged/checks/finding.hpp"
 #include "edged/core/measurements/recording_piece.hpp"
 #include "edged/dataset.hpp"
@@ -78,7 +80,7 @@ cv::Size recording_event_sensor(const Recording& recording);
 
 /// Opens the recording. Throws InputError if that fails, and without a calibration with extrinsics.
 Source open_source(const SourceOptions& options);
-/// The same for an open recording.
+/// A recording that is open already, as of open_source().
 Source calibrated(const SourceOptions& options, Recording recording);
 
 /// The command line `edged COMMAND RECORDING` with the options for reading the recording.
@@ -91,6 +93,11 @@ std::optional<double> cameras_start_after_s(const SourceOptions& options);
 /// The finding for cameras that start late, and the time at which a run should start [s].
 Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
+
+/// Passes each measurement to `use` until that returns false, the recording ends, or the user interrupts, with the
+/// progress in a status line: "12.3 / 60.0 s WHAT".
+void read_through(Dataset& dataset, bool quiet, std::string_view what,
+                  const std::function<bool(const Measurement&)>& use);
 
 /// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
 /// InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the calibration has.

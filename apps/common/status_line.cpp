@@ -79,6 +79,10 @@ std::optional<double> share_done(Timestamp t, const DatasetInfo& info) {
   return std::clamp(to_seconds(t - *info.begin) / to_seconds(*info.end - *info.begin), 0.0, 1.0);
 }
 
+void show_progress(StatusLine& status, Timestamp t, const DatasetInfo& info, std::string_view what) {
+  if (status.due()) status.show(progress_text(t, info, what), share_done(t, info));
+}
+
 std::string share_text(std::optional<double> share, double elapsed_s) {
   constexpr double kLeastShare = 0.01, kLeast_s = 1.0;  // before, the speed is not known
   if (!share) return "";

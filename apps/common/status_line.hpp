@@ -52,6 +52,9 @@ std::string progress_text(Timestamp t, const DatasetInfo& info, std::string_view
 /// The share of a recording that lies before t, 0 to 1, if its end is known.
 std::optional<double> share_done(Timestamp t, const DatasetInfo& info);
 
+/// Shows the progress at time t, with the share done, if another line is due.
+void show_progress(StatusLine& status, Timestamp t, const DatasetInfo& info, std::string_view what);
+
 /// "42 %, 1:05 left  ": the time that is left at the speed so far, if it can be told. "" without a share.
 std::string share_text(std::optional<double> share, double elapsed_s);
 

@@ -23,6 +23,12 @@ ModalityNumbers modality_numbers(const Step& step, Modality modality);
 /// Time since the oldest keyframe with a map match in the images of this step. Nothing without a match.
 std::optional<double> map_reach_s(const Step& step);
 
+/// Processing time of a packet.
+struct PacketPace {
+  double processing_ms = 0;          ///< the odometry's work on it
+  std::optional<double> latency_ms;  ///< live runs: from measurement to result
+};
+
 /// Report and live page show at most this many, the first ones.
 inline constexpr std::size_t kMostChangesShown = 300;
 

@@ -26,6 +26,16 @@ std::string wrapped(const std::string& line, std::size_t indent) {
   return text + rest;
 }
 
+std::vector<std::string> split(std::string_view text, std::string_view separator) {
+  std::vector<std::string> parts;
+  for (std::size_t end; (end = text.find(separator)) != std::string_view::npos;) {
+    parts.emplace_back(text.substr(0, end));
+    text.remove_prefix(end + separator.size());
+  }
+  if (!text.empty() || parts.empty()) parts.emplace_back(text);
+  return parts;
+}
+
 std::string fit_columns(const std::string& text, std::size_t columns) {
   return text.substr(0, std::min(text.find('\n'), columns));
 }

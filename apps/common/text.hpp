@@ -8,6 +8,7 @@
 #include <concepts>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace edged {
 
@@ -24,6 +25,9 @@ inline constexpr std::size_t kColumns = 80;
 
 /// A text wrapped between words at kColumns, with later lines indented. A single word may be longer.
 std::string wrapped(const std::string& line, std::size_t indent);
+
+/// The parts of a text between separators; a separator at its end adds none.
+std::vector<std::string> split(std::string_view text, std::string_view separator);
 
 /// One line, cut to a number of columns.
 std::string fit_columns(const std::string& text, std::size_t columns);

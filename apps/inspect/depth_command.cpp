@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "common/command.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/depth/network.hpp"
 #include "edged/events/voxel_grid.hpp"
 #include "edged/options/depth.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -45,19 +45,17 @@ double inference_ms(DepthNetwork& network) {
   return median(std::move(times));
 }
 
-void print_text(const DepthModel& m, const std::filesystem::path& file, double ms) {
+std::string text_of(const DepthModel& m, const std::filesystem::path& file, double ms) {
   const auto size = static_cast<double>(std::filesystem::file_size(file));
-  fmt::print("{}: {} ({:.2f} MB)\n", m.name, file.string(), 1e-6 * size);
-  if (!m.note.empty()) fmt::print("  {}\n", m.note);
-  fmt::print("  input   {} bins over {:.0f} ms of events{}, {}\n", m.bins, 1e3 * m.window_s,
-             m.shrink > 1 ? fmt::format(", at 1/{} of the resolution", m.shrink) : "",
-             m.states.empty() ? "no memory" : "recurrent");
-  fmt::print("  output  {:.2f} .. {:.0f} m, depth = {} exp(-{} (1 - y))", m.d_max_m * std::exp(-m.alpha), m.d_max_m,
-             m.d_max_m, m.alpha);
-  if (m.focal_px > 0.0) fmt::print(", times the focal length / {:.1f} px", m.focal_px);
-  fmt::print("\n  error   {:.2f} (rms of ln depth, as its makers measured it)\n", m.sigma_ln);
-  fmt::print("  time    {:.1f} ms of one core a window of a DAVIS240C\n", ms);
-  fmt::print("Others: edged depth fetch\n");
+  return fmt::format(
+      "{}: {} ({:.2f} MB)\n{}  input   {} bins over {:.0f} ms of events{}, {}\n"
+      "  output  {:.2f} .. {:.0f} m, depth = {} exp(-{} (1 - y)){}\n"
+      "  error   {:.2f} (rms of ln depth, as its makers measured it)\n"
+      "  time    {:.1f} ms of one core a window of a DAVIS240C\nOthers: edged depth fetch\n",
+      m.name, file.string(), 1e-6 * size, m.note.empty() ? "" : fmt::format("  {}\n", m.note), m.bins, 1e3 * m.window_s,
+      m.shrink > 1 ? fmt::format(", at 1/{} of the resolution", m.shrink) : "",
+      m.states.empty() ? "no memory" : "recurrent", m.d_max_m * std::exp(-m.alpha), m.d_max_m, m.d_max_m, m.alpha,
+      m.focal_px > 0.0 ? fmt::format(", times the focal length / {:.1f} px", m.focal_px) : "", m.sigma_ln, ms);
 }
 
 int run_depth(const DepthOptions& options) {
@@ -65,15 +63,11 @@ int run_depth(const DepthOptions& options) {
   DepthNetwork network(file);
   const DepthModel& m = network.model();
   const double ms = inference_ms(network);
-  if (!options.json) {
-    print_text(m, file, ms);
-    return kExitOk;
-  }
   const nlohmann::ordered_json json = {{"name", m.name},         {"file", file.string()},     {"note", m.note},
                                        {"bins", m.bins},         {"window_s", m.window_s},    {"shrink", m.shrink},
                                        {"d_max_m", m.d_max_m},   {"alpha", m.alpha},          {"focal_px", m.focal_px},
                                        {"sigma_ln", m.sigma_ln}, {"states", m.states.size()}, {"inference_ms", ms}};
-  fmt::print("{}\n", json.dump(2));
+  print_result(options.json, json, text_of(m, file, ms));
   return kExitOk;
 }
 

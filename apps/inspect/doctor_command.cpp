@@ -8,15 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
 #include "edged/checks/checks.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -81,7 +80,7 @@ int run_doctor(const DoctorOptions& options) {
       if (const std::string* camera = camera_of(measurement); camera && *camera == cameras[i].recorded)
         visual[i].add(measurement);
   });
-  if (interrupt_signal() != 0) return kExitSignalBase + interrupt_signal();
+  if (interrupt_signal() != 0) return exit_code_of_interrupt();
 
   std::vector<CameraCheck> checks;
   for (std::size_t i = 0; i < cameras.size(); ++i)
@@ -98,8 +97,8 @@ int run_doctor(const DoctorOptions& options) {
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});
   const bool ill = has_error(findings);
-  fmt::print("{}", options.json ? json_text(to_json(findings)) + "\n"
-                                : to_text(findings) + "next     " + next_step(options, recording, ill) + "\n");
+  print_result(options.json, to_json(findings),
+               to_text(findings) + "next     " + next_step(options, recording, ill) + "\n");
   return ill ? kExitInput : kExitOk;
 }
 
@@ -111,10 +110,8 @@ void add_doctor_command(CLI::App& app, std::function<int()>& chosen) {
       "doctor", "Check a recording and its calibration and propose remedies (exit code 3 for errors)");
   add_source_options(*doctor, options->source);
   add_cameras_option(*doctor, options->source);
-  doctor->add_flag("--quiet", options->quiet, "No status line");
-  doctor->add_flag("--json", options->json, "Print JSON");
-  doctor->footer("Example:\n  edged doctor flight.bag --calib camchain-imucam.yaml");
-  doctor->callback([options, &chosen] { chosen = [options] { return run_doctor(*options); }; });
+  finish_command(*doctor, options, "Example:\n  edged doctor flight.bag --calib camchain-imucam.yaml", chosen,
+                 run_doctor);
 }
 
 }  // namespace edged

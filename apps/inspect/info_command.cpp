@@ -7,12 +7,11 @@
 #include <memory>
 #include <string>
 
+#include "common/command.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/core/geometry.hpp"
 #include "inspect/survey.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -44,14 +43,12 @@ int run_info(const InfoOptions& options) {
   catch_interrupts();
   const Recording recording = open_of_any_size(options.source);
   const auto [survey, damage] = survey_recording(*recording.dataset, options.quiet, {});
-  if (options.json)
-    fmt::print("{}\n", json_text(to_json(survey)));
-  else
-    fmt::print("{}{:<15} {}\n{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording), "next",
-               command_line("doctor", options.source));
+  print_result(options.json, to_json(survey),
+               fmt::format("{}{:<15} {}\n{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording),
+                           "next", command_line("doctor", options.source)));
   if (damage) throw InputError(*damage);
   if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts cover the part that was read");
-  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+  return exit_code_of_interrupt();
 }
 
 }  // namespace
@@ -61,10 +58,7 @@ void add_info_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* info = app.add_subcommand("info", "Describe a recording: streams, rates, gaps, hot pixels, IMU noise");
   add_source_options(*info, options->source);
   add_cameras_option(*info, options->source);
-  info->add_flag("--quiet", options->quiet, "No status line");
-  info->add_flag("--json", options->json, "Print JSON");
-  info->footer("Example:\n  edged info flight.bag");
-  info->callback([options, &chosen] { chosen = [options] { return run_info(*options); }; });
+  finish_command(*info, options, "Example:\n  edged info flight.bag", chosen, run_info);
 }
 
 }  // namespace edged

@@ -10,15 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/command.hpp"
 #include "common/files.hpp"
-#include "common/json_text.hpp"
 #include "common/text.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/map/map_merge.hpp"
 #include "outputs/final_trajectory.hpp"
 #include "outputs/map.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -57,18 +56,16 @@ nlohmann::ordered_json describe(const SavedMap& map) {
 
 int run_info(const MapCommandOptions& options) {
   const nlohmann::ordered_json about = describe(read_map(options.file));
-  if (options.json) {
-    fmt::print("{}\n", json_text(about));
-    return kExitOk;
-  }
-  fmt::print("{}: {}, {} over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
-             quantity(about["keyframes"].get<int>(), "keyframe"), quantity(about["points"].get<int>(), "point"),
-             about["size_m"][0].get<double>(), about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
-             std::filesystem::file_size(options.file) / 1024);
+  std::string text =
+      fmt::format("{}: {}, {} over {:.1f} x {:.1f} x {:.1f} m, {} kB\n", options.file.string(),
+                  quantity(about["keyframes"].get<int>(), "keyframe"), quantity(about["points"].get<int>(), "point"),
+                  about["size_m"][0].get<double>(), about["size_m"][1].get<double>(), about["size_m"][2].get<double>(),
+                  std::filesystem::file_size(options.file) / 1024);
   for (const auto& camera : about["cameras"])
-    fmt::print("  {:<12} {}; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
-               quantity(camera["keyframes"].get<int>(), "keyframe"), camera["width"].get<int>(),
-               camera["height"].get<int>(), camera["focal_px"].get<double>());
+    text += fmt::format("  {:<12} {}; {} x {} px, focal length {:.1f} px\n", camera["name"].get<std::string>(),
+                        quantity(camera["keyframes"].get<int>(), "keyframe"), camera["width"].get<int>(),
+                        camera["height"].get<int>(), camera["focal_px"].get<double>());
+  print_result(options.json, about, text);
   return kExitOk;
 }
 
@@ -76,11 +73,9 @@ int run_show(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file);
   check_writable(options.out, "--out");
   write_file(options.out, map_ply(mapped(map)));
-  if (options.json)
-    fmt::print("{}\n", json_text({{"out", options.out.string()}, {"keyframes", map.keyframes.size()}}));
-  else
-    fmt::print("{}: points of {}; any viewer of point clouds shows them\n", options.out.string(),
-               quantity(map.keyframes.size(), "keyframe"));
+  print_result(options.json, {{"out", options.out.string()}, {"keyframes", map.keyframes.size()}},
+               fmt::format("{}: points of {}; any viewer of point clouds shows them\n", options.out.string(),
+                           quantity(map.keyframes.size(), "keyframe")));
   return kExitOk;
 }
 
@@ -96,16 +91,15 @@ int run_merge(const MapCommandOptions& options) {
   const SavedMap both = merged(map, other, *T_A_B);
   write_file(options.out, to_bytes(both));
   const Eigen::Vector3d p = T_A_B->translation();
-  if (options.json) {
-    fmt::print("{}\n", json_text({{"out", options.out.string()},
-                                  {"keyframes", both.keyframes.size()},
-                                  {"other_at_m", {p.x(), p.y(), p.z()}},
-                                  {"other_turned_deg", so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian}}));
-    return kExitOk;
-  }
-  fmt::print("{}: {}; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n", options.out.string(),
-             quantity(both.keyframes.size(), "keyframe"), options.other.string(), p.x(), p.y(), p.z(),
-             options.file.string(), so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian);
+  const double turned_deg = so3::log(T_A_B->rotation()).norm() * kDegreesPerRadian;
+  print_result(options.json,
+               {{"out", options.out.string()},
+                {"keyframes", both.keyframes.size()},
+                {"other_at_m", {p.x(), p.y(), p.z()}},
+                {"other_turned_deg", turned_deg}},
+               fmt::format("{}: {}; {} lies at {:.2f} {:.2f} {:.2f} m of {}, turned by {:.1f} deg\n",
+                           options.out.string(), quantity(both.keyframes.size(), "keyframe"), options.other.string(),
+                           p.x(), p.y(), p.z(), options.file.string(), turned_deg));
   return kExitOk;
 }
 

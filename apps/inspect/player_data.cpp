@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inspect/player_data.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <utility>

@@ -6,25 +6,19 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
-#include "common/json_text.hpp"
-#include "common/numbers.hpp"
 #include "common/source.hpp"
-#include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
-#include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/event_pictures.hpp"
 #include "inspect/player_data.hpp"
-#include "program/commands.hpp"
-#include "program/program.hpp"
 #include "report/report_page.hpp"
 
 namespace edged {
@@ -39,6 +33,7 @@ struct ShowOptions {
   std::size_t events = 0;
   std::string style = "polarity";
   PictureStyle picture_style() const { return style == "counts" ? PictureStyle::Counts : PictureStyle::Polarity; }
+  PictureRule rule() const { return {duration_from_seconds(window_s), events}; }
   double max_mb = 4.5;
   std::size_t max_pictures = 10000;
   bool quiet = false, json = false;
@@ -51,35 +46,18 @@ struct Shown {
 };
 
 /// Reads to the end, or until `on_picture` stops it.
-class Reader {
- public:
-  Reader(const ShowOptions& options, Dataset& dataset, cv::Size sensor, int binning)
-      : dataset_(dataset),
-        status_(options.quiet),
-        pictures_(sensor, binning, {duration_from_seconds(options.window_s), options.events}) {}
-
-  void go(const std::function<void(const Frame&)>& on_frame,
+void read(const ShowOptions& options, Dataset& dataset, EventPictures pictures,
+          const std::function<void(const Frame&)>& on_frame,
           const std::function<bool(const EventPicture&)>& on_picture) {
-    bool more = true;
-    const auto show = [&](const EventPicture& picture) { more = more && on_picture(picture); };
-    InterruptibleDataset recording(dataset_);
-    while (more) {
-      const std::optional<Measurement> measurement = recording.next();
-      if (!measurement) break;
-      if (const auto* batch = std::get_if<EventBatch>(&*measurement)) pictures_.add(batch->events, show);
-      if (const auto* frame = std::get_if<Frame>(&*measurement)) on_frame(*frame);
-      if (const auto t = last_stamp(*measurement); t && status_.due())
-        status_.show(progress_text(*t, dataset_.info(), "shown"), share_done(*t, dataset_.info()));
-    }
-    pictures_.finish(show);
-    status_.clear();
-  }
-
- private:
-  Dataset& dataset_;
-  StatusLine status_;
-  EventPictures pictures_;
-};
+  bool more = true;
+  const auto show = [&](const EventPicture& picture) { more = more && on_picture(picture); };
+  read_through(dataset, options.quiet, "shown", [&](const Measurement& measurement) {
+    if (const auto* batch = std::get_if<EventBatch>(&measurement)) pictures.add(batch->events, show);
+    if (const auto* frame = std::get_if<Frame>(&measurement)) on_frame(*frame);
+    return more;
+  });
+  pictures.finish(show);
+}
 
 /// events_000001.png, ... at full size, each new frame as frame_000001.png, ..., and pictures.csv about them.
 Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sensor) {
@@ -88,25 +66,25 @@ Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sens
   std::optional<Frame> newest;
   Timestamp begin;
   Shown shown;
-  Reader(options, dataset, sensor, 1)
-      .go([&](const Frame& frame) { newest = frame; },
-          [&](const EventPicture& picture) {
-            if (shown.pictures == 0) begin = picture.begin;
-            if (shown.pictures == options.max_pictures) {
-              shown.stopped_after_s = to_seconds(picture.begin - begin);
-              return false;
-            }
-            if (newest) {
-              frame_file = fmt::format("frame_{:06d}.png", ++shown.frames);
-              write_picture(options.out / frame_file, newest->image);
-              newest.reset();
-            }
-            const std::string file = fmt::format("events_{:06d}.png", ++shown.pictures);
-            write_picture(options.out / file, draw_event_picture(picture, options.picture_style()));
-            table += fmt::format("{},{},{},{},{}\n", file, to_ns(picture.begin), to_ns(picture.end), picture.events,
-                                 frame_file);
-            return true;
-          });
+  read(
+      options, dataset, EventPictures(sensor, 1, options.rule()), [&](const Frame& frame) { newest = frame; },
+      [&](const EventPicture& picture) {
+        if (shown.pictures == 0) begin = picture.begin;
+        if (shown.pictures == options.max_pictures) {
+          shown.stopped_after_s = to_seconds(picture.begin - begin);
+          return false;
+        }
+        if (newest) {
+          frame_file = fmt::format("frame_{:06d}.png", ++shown.frames);
+          write_picture(options.out / frame_file, newest->image);
+          newest.reset();
+        }
+        const std::string file = fmt::format("events_{:06d}.png", ++shown.pictures);
+        write_picture(options.out / file, draw_event_picture(picture, options.picture_style()));
+        table +=
+            fmt::format("{},{},{},{},{}\n", file, to_ns(picture.begin), to_ns(picture.end), picture.events, frame_file);
+        return true;
+      });
   write_file(options.out / "pictures.csv", table);
   return shown;
 }
@@ -115,12 +93,12 @@ Shown write_pictures(const ShowOptions& options, Dataset& dataset, cv::Size sens
 Shown write_page(const ShowOptions& options, Dataset& dataset, cv::Size sensor) {
   const int binning = (sensor.width + kWidestInPage_px - 1) / kWidestInPage_px;
   PlayerData player(static_cast<std::size_t>(1e6 * options.max_mb));
-  Reader(options, dataset, sensor, binning)
-      .go([&](const Frame& frame) { player.add(frame); },
-          [&](const EventPicture& picture) {
-            player.add(picture);
-            return true;
-          });
+  read(
+      options, dataset, EventPictures(sensor, binning, options.rule()), [&](const Frame& frame) { player.add(frame); },
+      [&](const EventPicture& picture) {
+        player.add(picture);
+        return true;
+      });
   nlohmann::ordered_json data = {{"version", kVersion},
                                  {"recording", dataset.info().name},
                                  {"format", dataset.info().format},
@@ -135,21 +113,22 @@ Shown write_page(const ShowOptions& options, Dataset& dataset, cv::Size sensor) 
 }
 
 void print_shown(const ShowOptions& options, const Shown& shown, const std::map<std::string, std::size_t>& repairs) {
-  if (options.json) {
-    const nlohmann::ordered_json json = {
-        {"out", options.out.string()}, {"pictures", shown.pictures},         {"frames", shown.frames},
-        {"every", shown.every},        {"complete", !shown.stopped_after_s}, {"repairs", repairs}};
-    fmt::print("{}\n", json_text(json));
-    return;
-  }
-  fmt::print("{}: {} of events, {}\n", options.out.string(), quantity(shown.pictures, "picture"),
-             quantity(shown.frames, "frame"));
+  std::string text = fmt::format("{}: {} of events, {}\n", options.out.string(), quantity(shown.pictures, "picture"),
+                                 quantity(shown.frames, "frame"));
   if (shown.every > 1)
-    fmt::print("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
-               shown.every, options.max_mb);
+    text += fmt::format("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
+                        shown.every, options.max_mb);
   if (shown.stopped_after_s)
-    fmt::print("stopped there; --max-pictures allows more, --start {:.3f} goes on\n",
-               options.source.piece.from_s + *shown.stopped_after_s);
+    text += fmt::format("stopped there; --max-pictures allows more, --start {:.3f} goes on\n",
+                        options.source.piece.from_s + *shown.stopped_after_s);
+  print_result(options.json,
+               {{"out", options.out.string()},
+                {"pictures", shown.pictures},
+                {"frames", shown.frames},
+                {"every", shown.every},
+                {"complete", !shown.stopped_after_s},
+                {"repairs", repairs}},
+               text);
 }
 
 int show_recording(const ShowOptions& options) {
@@ -167,7 +146,7 @@ int show_recording(const ShowOptions& options) {
   const Shown shown = page ? write_page(options, dataset, sensor) : write_pictures(options, dataset, sensor);
   if (shown.pictures == 0) spdlog::warn(fmt::format("{}: no events", dataset.info().name));
   print_shown(options, shown, dataset.repairs());
-  return interrupt_signal() == 0 ? kExitOk : kExitSignalBase + interrupt_signal();
+  return exit_code_of_interrupt();
 }
 
 }  // namespace
@@ -195,14 +174,12 @@ void add_show_command(CLI::App& app, std::function<int()>& chosen) {
   show->add_option("--max-pictures", options->max_pictures, "Largest number of images in a folder")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  show->add_flag("--quiet", options->quiet, "No status line");
-  show->add_flag("--json", options->json, "Print what was written as JSON");
-  show->footer(
-      "Needs neither IMU nor calibration. Examples:\n"
-      "  edged show flight.raw --out flight.html\n"
-      "  edged show flight.bag --start 20 --duration 5 --window 0.005 --out piece.html\n"
-      "  edged show events.txt --geometry 240x180 --events 20000 --style counts --out pictures");
-  show->callback([options, &chosen] { chosen = [options] { return show_recording(*options); }; });
+  finish_command(*show, options,
+                 "Needs neither IMU nor calibration. Examples:\n"
+                 "  edged show flight.raw --out flight.html\n"
+                 "  edged show flight.bag --start 20 --duration 5 --window 0.005 --out piece.html\n"
+                 "  edged show events.txt --geometry 240x180 --events 20000 --style counts --out pictures",
+                 chosen, show_recording);
 }
 
 }  // namespace edged

@@ -6,10 +6,8 @@
 
 #include <algorithm>
 
-#include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/source.hpp"
-#include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -253,16 +251,13 @@ nlohmann::ordered_json to_json(const RecordingStatistics& s) {
 
 SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also) {
   RecordingCollector surveyor(dataset.info());
-  StatusLine status(quiet);
-  InterruptibleDataset recording(dataset);
   std::optional<std::string> damage;
   try {
-    while (const auto measurement = recording.next()) {
-      surveyor.add(*measurement);
-      if (also) also(*measurement);
-      if (const auto t = last_stamp(*measurement); t && status.due())
-        status.show(progress_text(*t, dataset.info(), "read"), share_done(*t, dataset.info()));
-    }
+    read_through(dataset, quiet, "read", [&](const Measurement& measurement) {
+      surveyor.add(measurement);
+      if (also) also(measurement);
+      return true;
+    });
   } catch (const InputError& error) {
     damage = error.what();
   }

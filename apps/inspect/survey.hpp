@@ -22,8 +22,8 @@ struct SurveyRun {
   std::optional<std::string> damage;  ///< the error that ended reading
 };
 
-/// With a status line. Ends early, with what was read so far, when the user interrupts. also: called with every
-/// measurement; may be empty.
+/// Surveys a recording, with a status line. Ends early, with what was read so far, when the user interrupts. also:
+/// called with every measurement; may be empty.
 SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also);
 
 }  // namespace edged

@@ -41,7 +41,8 @@ class AutopilotOutput : public RunObserver {
       to_wire_.add(to_seconds(MavlinkOutput::unix_now() - now));
   }
 
-  /// With the reset counter of its step, or with the state before: never a state with the counter of another.
+  /// Corrects the prediction, with the reset counter of its step, or with the state before: never a state with the
+  /// counter of another.
   void on_step(const Step& step) override {
     const std::lock_guard lock(mutex_);
     prediction_.correct(is_tracking(step.status) ? std::optional(step.state) : std::nullopt);

@@ -3,7 +3,6 @@
 #include "live/live_feed.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "common/pictures.hpp"
 #include "common/step_numbers.hpp"
 #include "report/report_rows.hpp"
+#include "report/states_table.hpp"
 
 namespace edged {
 namespace {
@@ -20,49 +20,37 @@ constexpr auto kShotPeriod = std::chrono::milliseconds(150), kMapPeriod = std::c
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWidestShot_px = 640;
 
-struct LiveColumn {
-  const char* name;  ///< as in the report's rows
-  int decimals;
-};
-constexpr std::array kLiveColumns = {LiveColumn{"x", 5},
-                                     LiveColumn{"y", 5},
-                                     LiveColumn{"z", 5},
-                                     LiveColumn{"roll", 3},
-                                     LiveColumn{"pitch", 3},
-                                     LiveColumn{"yaw", 3},
-                                     LiveColumn{"vx", 4},
-                                     LiveColumn{"vy", 4},
-                                     LiveColumn{"vz", 4},
-                                     LiveColumn{"bgx", 6},
-                                     LiveColumn{"bgy", 6},
-                                     LiveColumn{"bgz", 6},
-                                     LiveColumn{"bax", 5},
-                                     LiveColumn{"bay", 5},
-                                     LiveColumn{"baz", 5},
-                                     LiveColumn{"keyframe", 0},
-                                     LiveColumn{"event_tracks", 0},
-                                     LiveColumn{"frame_tracks", 0},
-                                     LiveColumn{"landmarks", 0},
-                                     LiveColumn{"event_track_survival_rate", 3},
-                                     LiveColumn{"frame_track_survival_rate", 3},
-                                     LiveColumn{"map_matches", 0},
-                                     LiveColumn{"map_reach", 2},
-                                     LiveColumn{"event_rate", 0},
-                                     LiveColumn{"depth", 3},
-                                     LiveColumn{"processing", 3},
-                                     LiveColumn{"latency", 3},
-                                     LiveColumn{"sigma3_x", 6},
-                                     LiveColumn{"sigma3_y", 6},
-                                     LiveColumn{"sigma3_z", 6}};
+/// Position, angles, plot_columns(), and three sigmas of the position.
+std::vector<PlotColumn> live_columns() {
+  std::vector<PlotColumn> columns = {{"", "x", 5},    {"", "y", 5},     {"", "z", 5},
+                                     {"", "roll", 3}, {"", "pitch", 3}, {"", "yaw", 3}};
+  columns.insert(columns.end(), plot_columns().begin(), plot_columns().end());
+  for (const char* sigma : {"sigma3_x", "sigma3_y", "sigma3_z"}) columns.push_back({"", sigma, 6});
+  return columns;
+}
+
+/// The numbers of plot_columns().
+std::vector<double> plot_numbers(const Step& step, const PacketPace& pace) {
+  static const std::vector<std::string> kNames = state_columns();
+  const std::vector<double> numbers = state_numbers(step);
+  std::vector<double> chosen;
+  for (const PlotColumn& column : plot_columns()) {
+    const auto name = std::ranges::find(kNames, column.from);
+    chosen.push_back(name != kNames.end() ? numbers[static_cast<std::size_t>(name - kNames.begin())]
+                     : column.from == std::string_view("latency_ms") ? pace.latency_ms.value_or(kUnknown)
+                                                                     : pace.processing_ms);
+  }
+  return chosen;
+}
 
 nlohmann::ordered_json progress_json(const RunProgress& progress) {
   const RunStatistics& s = progress.statistics;
   const double span = s.visual_span_s();
-  return {{"poses", progress.poses},
+  return {{"poses", s.poses()},
           {"keyframes", s.keyframes()},
           {"packets", s.packets()},
           {"coverage", s.coverage()},
-          {"first_good_s", s.first_good_s() ? nlohmann::ordered_json(*s.first_good_s()) : nlohmann::ordered_json()},
+          {"first_good_s", value_or_null(s.first_good_s())},
           {"times_lost", s.times_lost()},
           {"duration_s", span},
           {"real_time_factor", progress.wall_s > 0.0 ? span / progress.wall_s : 0.0}};
@@ -72,32 +60,20 @@ nlohmann::ordered_json progress_json(const RunProgress& progress) {
 
 LiveFeed::LiveFeed(OutputFrame frame, const LivePoints& dense)
     : frame_(std::move(frame)), dense_(dense), angles_(Eigen::Vector3d::Constant(kUnknown)) {
-  newest_.values.fill(kUnknown);
+  newest_.values.assign(live_columns().size(), kUnknown);
 }
 
 LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
-  static_assert(kLiveColumns.size() == kColumns);
   Row row{to_seconds(step.t - *origin_), step.status, {}};
-  auto value = row.values.begin();
-  const auto put = [&value](const Eigen::Vector3d& v, bool known) {
-    for (int k = 0; k < 3; ++k) *value++ = known ? v[k] : kUnknown;
+  const auto put = [&row](const Eigen::Vector3d& v, bool known) {
+    for (int k = 0; k < 3; ++k) row.values.push_back(known ? v[k] : kUnknown);
   };
-  const bool tracking = is_tracking(step.status), started = step.status != TrackingStatus::Initializing;
+  const bool tracking = is_tracking(step.status);
   if (tracking) angles_ = angles_deg(step.state.T_W_B, angles_);
   put(frame_({step.t, step.state.T_W_B}).T.translation(), tracking);
   put(angles_, tracking);
-  put(step.state.v_W, started);
-  put(step.state.bias_gyro, started);
-  put(step.state.bias_accel, started);
-  const ModalityNumbers events = modality_numbers(step, Modality::Events),
-                        frames = modality_numbers(step, Modality::Frames);
-  for (const double number : {step.keyframe ? 1.0 : 0.0, static_cast<double>(events.tracks),
-                              static_cast<double>(frames.tracks), static_cast<double>(step.landmarks.size()),
-                              events.survival_rate.value_or(kUnknown), frames.survival_rate.value_or(kUnknown),
-                              step.map_matches.empty() ? kUnknown : static_cast<double>(step.map_matches.size()),
-                              map_reach_s(step).value_or(kUnknown), events.event_rate_hz, step.scene_depth,
-                              pace.processing_ms, pace.latency_ms.value_or(kUnknown)})
-    *value++ = number;
+  const std::vector<double> numbers = plot_numbers(step, pace);
+  row.values.insert(row.values.end(), numbers.begin(), numbers.end());
   const Eigen::Matrix3d covariance = step.covariance ? step.covariance->position : Eigen::Matrix3d::Zero();
   put(3.0 * covariance.diagonal().cwiseSqrt(), step.covariance.has_value());
   return row;
@@ -173,9 +149,10 @@ nlohmann::ordered_json LiveFeed::columns(const std::vector<Row>& rows) {
     json["t"].push_back(rounded(row.t, 4));
     json["status"].push_back(to_string(row.status));
   }
-  for (std::size_t k = 0; k < kColumns; ++k) {
-    auto& column = json[kLiveColumns[k].name] = nlohmann::ordered_json::array();
-    for (const Row& row : rows) column.push_back(rounded(row.values[k], kLiveColumns[k].decimals));
+  const std::vector<PlotColumn> all = live_columns();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    auto& column = json[all[k].name] = nlohmann::ordered_json::array();
+    for (const Row& row : rows) column.push_back(rounded(row.values[k], all[k].decimals));
   }
   return json;
 }

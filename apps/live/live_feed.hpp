@@ -3,7 +3,6 @@
 // Data for viewers of a running run: rows of its plots, status changes, map points, dense points, images.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -29,7 +28,6 @@ namespace edged {
 /// The progress of a run.
 struct RunProgress {
   RunStatistics statistics;
-  std::size_t poses = 0;
   double wall_s = 0;
   PacketPace pace;  ///< of the newest packet
 };
@@ -65,11 +63,10 @@ class LiveFeed {
   std::vector<unsigned char> picture(const std::string& of) const;
 
  private:
-  static constexpr std::size_t kColumns = 30;
   struct Row {
     double t = 0;  ///< [s] since the first packet
     TrackingStatus status = TrackingStatus::Initializing;
-    std::array<double, kColumns> values{};  ///< NaN where there is none
+    std::vector<double> values;  ///< NaN where there is none
   };
   struct Shot {
     std::size_t number = 0;  ///< 0: there is none

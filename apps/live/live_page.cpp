@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/live_page.hpp"
 
+#include <Eigen/Core>  // before httplib, whose system headers define _res
+
 #include <httplib.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -16,11 +18,13 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "common/cli.hpp"
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
-#include "program/program.hpp"
+#include "live/live_feed.hpp"
 #include "report/report_page.hpp"
 #include "run/run_context.hpp"
+#include "scene/live_points.hpp"
 
 namespace edged {
 namespace {
@@ -70,40 +74,14 @@ nlohmann::ordered_json about_run(const RunContext& run, const LivePoints& points
           {"whole_s", ends ? nlohmann::ordered_json(to_seconds(*info.end - *info.begin)) : nlohmann::ordered_json()}};
 }
 
-struct ServeOptions {
-  std::string address;  ///< "true" for the default; "" without a live page
-};
-
-class ServedPage : public RunObserver {
+/// A server in threads of its own. Calls by the thread of the run do not block, whatever browsers do, except `finish`.
+class LivePage {
  public:
-  explicit ServedPage(RunContext& run)
-      : run_(run),
-        points_(run.products.get<LivePoints>()),
-        snapshots_(run.products.get<Snapshots>()),
-        page_(*parse_serve_address(run.options.outputs.get<ServeOptions>().address), about_run(run, points_), run.frame,
-              points_) {
-    points_.watched = true;
-  }
-  const char* stage() const override { return "serve"; }
-  void on_begin() override { fmt::print(stderr, "edged: watch at {}\n", page_.url()); }
-  void on_step(const Step& step) override { page_.add(step, progress(), snapshots_); }
-  void on_end(const RunEnd& end) override { page_.finish(progress(), to_json(end.summary), run_.folder); }
-
- private:
-  RunProgress progress() const { return {run_.statistics, run_.statistics.poses(), run_.meter.wall_s(), run_.pace}; }
-
-  const RunContext& run_;
-  LivePoints& points_;
-  const Snapshots& snapshots_;
-  LivePage page_;
-};
-
-}  // namespace
-
-class LivePage::Server {
- public:
-  Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame, const LivePoints& dense);
-  ~Server();
+  LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+           const LivePoints& dense);
+  ~LivePage();
+  /// Notifies the viewers that the run is over. They get report.html of the folder in place of the live page; returns
+  /// when all have it, after at most 10 s, or 2 s after the last request.
   void finish(RunProgress progress, const nlohmann::ordered_json& metrics, const std::filesystem::path& folder);
 
   LiveFeed feed;
@@ -138,8 +116,8 @@ class LivePage::Server {
   std::jthread thread_;  ///< last: it uses the others
 };
 
-LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
-                         const LivePoints& dense)
+LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+                   const LivePoints& dense)
     : feed(std::move(frame), dense), page_(live_report_page(about)) {
   http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   // An idle connection blocks a thread, and the end of the program: browsers open some in advance.
@@ -162,7 +140,7 @@ LivePage::Server::Server(const ServeAddress& address, const nlohmann::ordered_js
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // stop() works only after this
 }
 
-LivePage::Server::~Server() {
+LivePage::~LivePage() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
@@ -171,7 +149,7 @@ LivePage::Server::~Server() {
   http_.stop();
 }
 
-void LivePage::Server::bind(ServeAddress address) {
+void LivePage::bind(ServeAddress address) {
   const std::string wanted = fmt::format("{}:{}", address.host, address.port);
   errno = 0;
   if (address.port != 0) {
@@ -189,7 +167,7 @@ void LivePage::Server::bind(ServeAddress address) {
                            told ? std::generic_category().message(error) : "no such address");
 }
 
-void LivePage::Server::answer() {
+void LivePage::answer() {
   http_.set_pre_routing_handler([this](const httplib::Request&, httplib::Response&) {
     const std::lock_guard lock(mutex_);
     asked_ = WallClock::now();
@@ -209,7 +187,7 @@ void LivePage::Server::answer() {
   http_.Get("/report.html", [this](const httplib::Request&, httplib::Response& response) { send_report(response); });
 }
 
-void LivePage::Server::welcome(httplib::Response& response) {
+void LivePage::welcome(httplib::Response& response) {
   {
     const std::lock_guard lock(mutex_);
     if (feed.viewers() >= kMostViewers) return refuse(response, 503, "Too many viewers already.\n");
@@ -227,7 +205,7 @@ void LivePage::Server::welcome(httplib::Response& response) {
 }
 
 /// Sends the next update when it is due. A slow viewer misses updates. False: the viewer has disconnected.
-bool LivePage::Server::tell(Viewer& viewer, httplib::DataSink& sink) {
+bool LivePage::tell(Viewer& viewer, httplib::DataSink& sink) {
   std::string end;
   {
     std::unique_lock lock(mutex_);
@@ -246,7 +224,7 @@ bool LivePage::Server::tell(Viewer& viewer, httplib::DataSink& sink) {
   return end.empty() || write("event: end\ndata: " + end + "\n\n");
 }
 
-void LivePage::Server::send_report(httplib::Response& response) {
+void LivePage::send_report(httplib::Response& response) {
   std::filesystem::path file;
   {
     const std::lock_guard lock(mutex_);
@@ -263,8 +241,8 @@ void LivePage::Server::send_report(httplib::Response& response) {
   });
 }
 
-void LivePage::Server::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
-                              const std::filesystem::path& folder) {
+void LivePage::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
+                      const std::filesystem::path& folder) {
   feed.finish(std::move(progress));
   {
     const std::lock_guard lock(mutex_);
@@ -276,7 +254,7 @@ void LivePage::Server::finish(RunProgress progress, const nlohmann::ordered_json
   part_from_viewers();
 }
 
-void LivePage::Server::part_from_viewers() {
+void LivePage::part_from_viewers() {
   const auto begin = WallClock::now();
   std::unique_lock lock(mutex_);
   while (true) {
@@ -290,22 +268,35 @@ void LivePage::Server::part_from_viewers() {
       fmt::format("live page: at most {} viewers at once, {} updates skipped for slow ones", most_viewers_, left_out_));
 }
 
-LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
-                   const LivePoints& dense)
-    : server_(std::make_unique<Server>(address, about, std::move(frame), dense)) {}
+struct ServeOptions {
+  std::string address;  ///< "true" for the default; "" without a live page
+};
 
-LivePage::~LivePage() = default;
+class ServedPage : public RunObserver {
+ public:
+  explicit ServedPage(RunContext& run)
+      : run_(run),
+        points_(run.products.get<LivePoints>()),
+        snapshots_(run.products.get<Snapshots>()),
+        page_(*parse_serve_address(run.options.outputs.get<ServeOptions>().address), about_run(run, points_), run.frame,
+              points_) {
+    points_.watched = true;
+  }
+  const char* stage() const override { return "serve"; }
+  void on_begin() override { fmt::print(stderr, "edged: watch at {}\n", page_.url); }
+  void on_step(const Step& step) override { page_.feed.add(step, progress(), snapshots_); }
+  void on_end(const RunEnd& end) override { page_.finish(progress(), to_json(end.summary), run_.folder); }
 
-const std::string& LivePage::url() const { return server_->url; }
+ private:
+  RunProgress progress() const { return {run_.statistics, run_.meter.wall_s(), run_.pace}; }
 
-void LivePage::add(const Step& step, RunProgress progress, const Snapshots& snapshots) {
-  server_->feed.add(step, std::move(progress), snapshots);
-}
+  const RunContext& run_;
+  LivePoints& points_;
+  const Snapshots& snapshots_;
+  LivePage page_;
+};
 
-void LivePage::finish(RunProgress progress, const nlohmann::ordered_json& metrics,
-                      const std::filesystem::path& folder) {
-  server_->finish(std::move(progress), metrics, folder);
-}
+}  // namespace
 
 std::optional<ServeAddress> parse_serve_address(const std::string& text) {
   ServeAddress address;

@@ -33,7 +33,7 @@ class LiveRun : public ::testing::Test {
           {.name = "events", .modality = Modality::Events, .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99))}};
       statistics.add(step);
       snapshots.add(step);
-      feed.add(step, {statistics, static_cast<std::size_t>(made), 1.0, {4.0, std::nullopt}}, snapshots);
+      feed.add(step, {statistics, 1.0, {4.0, std::nullopt}}, snapshots);
     }
   }
 

@@ -4,8 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
-#include <fstream>
-
+#include "common/files.hpp"
 #include "common/text.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -24,18 +23,14 @@ class ExternalSamples : public RunObserver {
     const auto* sample = std::get_if<ExternalSample>(&measurement);
     if (sample == nullptr) return;
     const ExternalSensor& sensor = sensor_of(*sample);
-    if (!file_.is_open()) {
-      file_.open(run_.folder / "external.csv");
-      file_ << "sensor,t_ns,values,sigmas\n";
-    }
+    if (!file_) file_.emplace(run_.folder / "external.csv", "sensor,t_ns,values,sigmas\n");
     const ExternalNumbers numbers = sensor.numbers(*sample);
-    file_ << fmt::format("{},{},{},{}\n", sensor.name, to_ns(time_of(*sample)), fmt::join(numbers.values, ","),
-                         fmt::join(numbers.sigmas, ","));
+    file_->add(fmt::format("{},{},{},{}\n", sensor.name, to_ns(time_of(*sample)), fmt::join(numbers.values, ","),
+                           fmt::join(numbers.sigmas, ",")));
     ++samples_[std::string(sensor.name)];
   }
 
   void on_summary(RunEnd& end) override {
-    file_.flush();
     for (std::size_t i = 0; i < external_sensors().size(); ++i) {
       const auto came = samples_.find(std::string(external_sensors()[i].name));
       if (came == samples_.end()) continue;
@@ -51,7 +46,7 @@ class ExternalSamples : public RunObserver {
 
  private:
   const RunContext& run_;
-  std::ofstream file_;
+  std::optional<TableFile> file_;
   std::map<std::string, std::size_t> samples_;  ///< by sensor
 };
 

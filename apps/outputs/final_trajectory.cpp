@@ -6,6 +6,7 @@
 
 #include "common/files.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
+#include "report/point_cloud.hpp"
 #include "run/run_context.hpp"
 
 namespace edged {
@@ -51,13 +52,12 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
       ++count;
     }
   }
-  return fmt::format(
-             "ply\nformat ascii 1.0\ncomment points of the map in the world (z up) [m], as known in the end\n"
-             "comment keyframe: row of keyframes.csv; tried, found: images in which the point was looked for, found\n"
-             "element vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-             "property uchar green\nproperty uchar blue\nproperty int keyframe\nproperty int tried\n"
-             "property int found\nend_header\n",
-             count) +
+  const std::vector<std::string> comments = {
+      "points of the map in the world (z up) [m], as known in the end",
+      "keyframe: row of keyframes.csv; tried, found: images in which the point was looked for, found"};
+  return ply_header(
+             false, comments, count,
+             "float x, float y, float z, uchar red, uchar green, uchar blue, int keyframe, int tried, int found") +
          vertices;
 }
 

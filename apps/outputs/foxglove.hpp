@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "edged/rig.hpp"
@@ -18,8 +17,8 @@ namespace edged::foxglove {
 using Json = nlohmann::ordered_json;
 using Point = std::array<float, 3>;
 
-/// By the name of the message: "foxglove.PoseInFrame", or "edged.Stats", which is ours.
-std::string schema_of(std::string_view type);
+/// The json schema of a message by its name: "foxglove.PoseInFrame", or "edged.Stats", which is ours.
+std::string schema_of(const std::string& type);
 
 // A time before zero becomes zero; lengths in metres.
 

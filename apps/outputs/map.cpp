@@ -11,8 +11,6 @@
 #include <fstream>
 #include <iterator>
 #include <set>
-#include <utility>
-#include <vector>
 
 #include "common/files.hpp"
 #include "edged/core/check.hpp"

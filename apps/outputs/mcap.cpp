@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/cli.hpp"
 #include "common/json_text.hpp"
 #include "common/pictures.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/undistort.hpp"
-#include "program/program.hpp"
 #include "report/report_path.hpp"
 #include "report/states_table.hpp"
 #include "run/run_context.hpp"
@@ -148,7 +148,7 @@ class McapFile : public RunObserver {
 
 }  // namespace
 
-/// Also where the clock has been set back.
+/// True also where the clock has been set back.
 bool ResultsMcap::Pace::due(Timestamp t) {
   if (last_ && t >= *last_ && t < *last_ + period_) return false;
   last_ = t;

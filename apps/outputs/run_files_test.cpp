@@ -154,12 +154,12 @@ TEST_F(RunFolder, GivesThePaceOfEachPacketBackButOfThoseThatAKillHasCut) {
   make_run_folder(folder);
   {
     RunWriter writer(folder, OutputFrame({}, "body"), {});
-    PaceWriter pace(folder);
+    TableFile pace(folder / "pace.csv", pace_heading());
     Step step;
     for (int i = 0; i < 3; ++i) {
       step.t = timestamp_from_seconds(i);
       writer.add(step);
-      if (i < 2) pace.add(step.t, {1.5 + i, i == 1 ? std::optional(20.0) : std::nullopt});
+      if (i < 2) pace.add(pace_line(step.t, {1.5 + i, i == 1 ? std::optional(20.0) : std::nullopt}));
     }
   }
   StatesTable states = read_states(folder);

@@ -17,11 +17,10 @@
 #include <system_error>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
-#include "edged/config.hpp"
 #include "edged/core/check.hpp"
-#include "program/commands.hpp"
 
 namespace edged {
 namespace {
@@ -73,8 +72,7 @@ Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
     if (known.empty()) continue;
     const std::string name = word.substr(0, word.find('='));
     return {kExitUsage, "usage",
-            fmt::format("unknown {} '{}'{}; {}", flag ? "flag" : "command", name,
-                        did_you_mean(nearest_name(known, name, typing_errors(name))), see)};
+            fmt::format("unknown {} '{}'{}; {}", flag ? "flag" : "command", name, did_you_mean(known, name), see)};
   }
   return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
 }

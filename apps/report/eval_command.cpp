@@ -13,14 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "common/numbers.hpp"
+#include "common/command.hpp"
 #include "common/source.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/eval/metrics.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
-#include "program/commands.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {
@@ -126,17 +125,14 @@ std::string next_text(const EvalOptions& options, const Compared& compared) {
 int run_eval(const EvalOptions& options, const CLI::App& eval) {
   const ReadFile truth(options.truth), estimate(options.estimate);
   const Compared compared = compare(truth, estimate, options, eval);
-  if (options.json) {
-    nlohmann::ordered_json json = to_json(compared.evaluation);
-    json["ground_truth_columns"] = truth.form.columns.said;
-    json["estimate_columns"] = estimate.form.columns.said;
-    if (compared.offset) json["ground_truth_time_offset"] = to_json(*compared.offset);
-    fmt::print("{}\n", json.dump(2));
-    return kExitOk;
-  }
-  fmt::print("ground truth: {}\nestimate: {}\n{}{}  next                   {}", truth.form.columns.said,
-             estimate.form.columns.said, to_table(compared.evaluation),
-             compared.offset ? offset_text(*compared.offset) : "", next_text(options, compared));
+  nlohmann::ordered_json json = to_json(compared.evaluation);
+  json["ground_truth_columns"] = truth.form.columns.said;
+  json["estimate_columns"] = estimate.form.columns.said;
+  if (compared.offset) json["ground_truth_time_offset"] = to_json(*compared.offset);
+  print_result(options.json, json,
+               fmt::format("ground truth: {}\nestimate: {}\n{}{}  next                   {}", truth.form.columns.said,
+                           estimate.form.columns.said, to_table(compared.evaluation),
+                           compared.offset ? offset_text(*compared.offset) : "", next_text(options, compared)));
   return kExitOk;
 }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "common/numbers.hpp"
+#include "common/command.hpp"
 #include "common/text.hpp"
 
 namespace edged {

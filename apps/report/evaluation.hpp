@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/cli_fwd.hpp"
+#include "common/cli.hpp"
 #include "edged/eval/metrics.hpp"
 
 namespace edged {
@@ -27,7 +27,7 @@ Protocol chosen_protocol(const EvaluationOptions& options);
 std::string to_table(const Evaluation& evaluation);
 /// "1.23 mm", from 10 cm on "0.123 m".
 std::string error_text(double error_m);
-/// In one line, for the existing windows.
+/// The local errors in one line, for the existing windows.
 std::string local_error_text(const std::vector<LocalError>& local);
 
 }  // namespace edged

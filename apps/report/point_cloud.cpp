@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common/json_text.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -61,6 +62,15 @@ float float_at(const char* vertex, std::size_t offset) {
 }
 
 }  // namespace
+
+std::string ply_header(bool binary, const std::vector<std::string>& comments, std::size_t count,
+                       const std::string& properties) {
+  std::string header = fmt::format("ply\nformat {} 1.0\n", binary ? "binary_little_endian" : "ascii");
+  for (const std::string& comment : comments) header += fmt::format("comment {}\n", comment);
+  header += fmt::format("element vertex {}\n", count);
+  for (const std::string& property : split(properties, ", ")) header += fmt::format("property {}\n", property);
+  return header + "end_header\n";
+}
 
 PointCloud read_cloud(const std::filesystem::path& file, std::size_t most) {
   PointCloud cloud;

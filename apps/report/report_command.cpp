@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/files.hpp"
-#include "common/json_text.hpp"
-#include "program/commands.hpp"
 #include "report/report_data.hpp"
 #include "report/report_page.hpp"
 
@@ -30,7 +29,7 @@ int write_report(const ReportCommand& options) {
   if (out.empty() || std::filesystem::is_directory(out)) out /= "report.html";
   check_writable(out, "--out");
   write_file(out, report_page(report_data(options.runs, options.report)));
-  fmt::print("{}\n", options.json ? json_text({{"out", out.string()}}) : out.string());
+  print_result(options.json, {{"out", out.string()}}, out.string() + "\n");
   return kExitOk;
 }
 
@@ -47,13 +46,12 @@ void add_report_command(CLI::App& app, std::function<int()>& chosen) {
   report->add_option("--truth", options->report.truth,
                      "Ground truth of the sensor that the trajectory files are of [that of each run]");
   add_evaluation_options(*report, options->report.how);
-  report->add_flag("--json", options->json, "Print the path of the page as JSON");
-  report->footer(
-      "Examples:\n"
-      "  edged report runs/boxes-fused\n"
-      "  edged report runs/boxes-fused runs/boxes-events runs/boxes-frames --out modes.html\n"
-      "  edged report runs/boxes-fused other_slam.tum --truth groundtruth.txt --protocol P1");
-  report->callback([options, &chosen] { chosen = [options] { return write_report(*options); }; });
+  finish_command(*report, options,
+                 "Examples:\n"
+                 "  edged report runs/boxes-fused\n"
+                 "  edged report runs/boxes-fused runs/boxes-events runs/boxes-frames --out modes.html\n"
+                 "  edged report runs/boxes-fused other_slam.tum --truth groundtruth.txt --protocol P1",
+                 chosen, write_report);
 }
 
 }  // namespace edged

@@ -9,6 +9,7 @@
 #include <optional>
 #include <tuple>
 
+#include "common/cli.hpp"
 #include "common/config_source.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
@@ -17,7 +18,6 @@
 #include "edged/core/path_length.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
-#include "program/program.hpp"
 #include "report/point_cloud.hpp"
 #include "report/report_rows.hpp"
 
@@ -67,10 +67,10 @@ std::string output_frame(const LoadedRun& run) {
   return run.metrics.is_null() ? "body" : run.metrics.value("output_frame", "body");
 }
 
-/// By the calibration that the run found, if it ended.
+/// The rig of the run, with the calibration that it estimated, if it ended.
 Rig rig_of(const LoadedRun& run) { return run.found ? rig_for_poses(run.given->rig, run.found->rig) : run.given->rig; }
 
-/// In the world that is shown: with the alignment of the causal poses.
+/// A path in the world that is shown: with the alignment of the causal poses.
 Trajectory as_shown(const LoadedRun& run, Trajectory path, const std::string& frame) {
   const Rig rig = rig_of(run);
   const OutputFrame written(rig, frame), shown(rig, run.poses.frame);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report_path.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "edged/camera/output_frame.hpp"

@@ -3,7 +3,6 @@
 // The poses of a run or a trajectory file in its report: aligned with the truth if there is one.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +18,10 @@ namespace edged {
 struct AlignedPath {
   std::string frame = "body";                 ///< whose pose `shown` is
   Trajectory shown;                           ///< in the world of the truth, else in that of the estimate
-  Trajectory body;                            ///< the same of the body, on the IMU clock
+  Trajectory body;                            ///< `shown` of the body, on the IMU clock
   std::vector<std::size_t> rows;              ///< of states.csv, one for each pose
   std::vector<std::optional<SE3>> truth;      ///< true pose, one for each pose; of a sparse truth, at the nearest one
-  std::vector<std::optional<SE3>> true_body;  ///< the same of the body
+  std::vector<std::optional<SE3>> true_body;  ///< `truth` of the body
   Trajectory true_path;                       ///< the ground truth over the time of the run
   std::vector<double> error_m, rotation_deg;  ///< one for each pose, NaN where there is no truth
   std::vector<PoseErrorSample> pose_errors;   ///< errors since each start, and their limits

@@ -73,35 +73,31 @@ class PathColumns {
   std::vector<double> error_, rotation_;
 };
 
-struct StateColumn {
-  const char* from;
-  const char* to;
-  int decimals;
-};
-
-constexpr std::array kStateColumns = {StateColumn{"vx_mps", "vx", 4},
-                                      StateColumn{"vy_mps", "vy", 4},
-                                      StateColumn{"vz_mps", "vz", 4},
-                                      StateColumn{"bgx_radps", "bgx", 6},
-                                      StateColumn{"bgy_radps", "bgy", 6},
-                                      StateColumn{"bgz_radps", "bgz", 6},
-                                      StateColumn{"bax_mps2", "bax", 5},
-                                      StateColumn{"bay_mps2", "bay", 5},
-                                      StateColumn{"baz_mps2", "baz", 5},
-                                      StateColumn{"keyframe", "keyframe", 0},
-                                      StateColumn{"event_tracks", "event_tracks", 0},
-                                      StateColumn{"frame_tracks", "frame_tracks", 0},
-                                      StateColumn{"landmarks", "landmarks", 0},
-                                      StateColumn{"event_track_survival_rate", "event_track_survival_rate", 3},
-                                      StateColumn{"frame_track_survival_rate", "frame_track_survival_rate", 3},
-                                      StateColumn{"map_matches", "map_matches", 0},
-                                      StateColumn{"map_reach_s", "map_reach", 2},
-                                      StateColumn{"event_rate_hz", "event_rate", 0},
-                                      StateColumn{"scene_depth_m", "depth", 3},
-                                      StateColumn{"processing_ms", "processing", 3},
-                                      StateColumn{"latency_ms", "latency", 3}};
+constexpr PlotColumn kPlotColumns[] = {{"vx_mps", "vx", 4},
+                                       {"vy_mps", "vy", 4},
+                                       {"vz_mps", "vz", 4},
+                                       {"bgx_radps", "bgx", 6},
+                                       {"bgy_radps", "bgy", 6},
+                                       {"bgz_radps", "bgz", 6},
+                                       {"bax_mps2", "bax", 5},
+                                       {"bay_mps2", "bay", 5},
+                                       {"baz_mps2", "baz", 5},
+                                       {"keyframe", "keyframe", 0},
+                                       {"event_tracks", "event_tracks", 0},
+                                       {"frame_tracks", "frame_tracks", 0},
+                                       {"landmarks", "landmarks", 0},
+                                       {"event_track_survival_rate", "event_track_survival_rate", 3},
+                                       {"frame_track_survival_rate", "frame_track_survival_rate", 3},
+                                       {"map_matches", "map_matches", 0},
+                                       {"map_reach_s", "map_reach", 2},
+                                       {"event_rate_hz", "event_rate", 0},
+                                       {"scene_depth_m", "depth", 3},
+                                       {"processing_ms", "processing", 3},
+                                       {"latency_ms", "latency", 3}};
 
 }  // namespace
+
+std::span<const PlotColumn> plot_columns() { return kPlotColumns; }
 
 Eigen::Vector3d angles_deg(const SE3& T, const Eigen::Vector3d& before) {
   const Eigen::Matrix3d R = T.R();
@@ -139,7 +135,7 @@ Json rows_json(const StatesTable& states, const AlignedPath& path, Timestamp ori
     json["status"].push_back(to_string(states.status[row]));
   }
   poses.write(json, chosen);
-  for (const auto& [from, to, decimals] : kStateColumns) {
+  for (const auto& [from, to, decimals] : kPlotColumns) {
     const std::vector<double>* column = states.find(from);
     if (!column) continue;
     for (const std::size_t row : chosen) json[to].push_back(rounded((*column)[row], decimals));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Readers of the tables in a run folder: states.csv of any version as columns, pace.csv, keyframes.csv.
+// Tables of a run folder: states.csv, of any version as columns, and readers of pace.csv and keyframes.csv.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/step_numbers.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/odometry.hpp"
@@ -15,6 +16,14 @@
 #include "edged/step.hpp"
 
 namespace edged {
+
+/// The columns of states.csv after t_ns and status.
+std::vector<std::string> state_columns();
+/// The numbers of a step in these columns; NaN where it has none.
+std::vector<double> state_numbers(const Step& step);
+/// The first lines of states.csv, and the line of a step.
+std::string states_heading();
+std::string state_line(const Step& step);
 
 struct StatesTable {
   std::vector<Timestamp> t;
@@ -25,8 +34,8 @@ struct StatesTable {
   const std::vector<double>* find(const std::string& column) const;
 };
 
-/// Of a run's folder. Truncated lines, such as the last one after a kill, are skipped. Throws InputError when
-/// there is no such file, or it has other columns.
+/// Reads states.csv of a run folder. Truncated lines, such as the last one after a kill, are skipped. Throws InputError
+/// when there is no such file, or it has other columns.
 StatesTable read_states(const std::filesystem::path& folder);
 
 /// Good and Degraded rows as T_W_B on the IMU clock. rows: gets the row of each.
@@ -47,6 +56,10 @@ class CovarianceSamples {
   std::vector<StateCovarianceSample> samples_;
   int start_ = 0;
 };
+
+/// The first line of pace.csv, and the line of a step.
+std::string pace_heading();
+std::string pace_line(Timestamp t, const PacketPace& pace);
 
 /// Adds the columns processing_ms and latency_ms, if the run's folder has them.
 void read_pace(const std::filesystem::path& folder, StatesTable& states);

@@ -5,16 +5,15 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <system_error>
 #include <utility>
 
+#include "common/cli.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/archive/zip_archive.hpp"
-#include "program/program.hpp"
 #include "report/states_table.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_reader.hpp"

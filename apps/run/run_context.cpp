@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "program/program.hpp"
+#include "common/cli.hpp"
 #include "report/report_path.hpp"
 
 namespace edged {

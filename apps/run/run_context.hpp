@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/cli_fwd.hpp"
+#include "common/cli.hpp"
 #include "edged/camera/output_frame.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/step.hpp"

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <system_error>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>

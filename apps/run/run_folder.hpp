@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/cli_fwd.hpp"
+#include "common/cli.hpp"
 
 namespace edged {
 

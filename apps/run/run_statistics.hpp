@@ -9,23 +9,18 @@
 #include <optional>
 #include <string>
 
+#include "common/step_numbers.hpp"
 #include "edged/measurement.hpp"
 #include "edged/odometry.hpp"
 
 namespace edged {
-
-/// Processing time of a packet.
-struct PacketPace {
-  double processing_ms = 0;          ///< the odometry's work on it
-  std::optional<double> latency_ms;  ///< live runs: from measurement to result
-};
 
 /// Counts of one run. Stamps are on the IMU clock.
 class RunStatistics {
  public:
   /// A visual measurement that the mode uses: spans the time that a pose could cover.
   void add_visual(Timestamp first, Timestamp last);
-  /// The same of a measurement as recorded, where it is one.
+  /// Adds a measurement as recorded, if it is a visual one.
   void add_visual(const Measurement& measurement, const Rig& used);
   void add(const Step& step);
 
@@ -35,7 +30,7 @@ class RunStatistics {
   std::size_t keyframes() const { return keyframes_; }
   std::size_t loops_closed() const { return loops_closed_; }
   std::size_t times_lost() const { return times_lost_; }
-  /// Of them, those at which the cameras contradicted the IMU.
+  /// Losses at which the cameras contradicted the IMU.
   std::size_t times_contradicted() const { return times_contradicted_; }
   /// First visual measurement to last [s].
   double visual_span_s() const;
@@ -51,7 +46,7 @@ class RunStatistics {
   /// What the last initialization waited for, and what ended the last estimate; may be empty.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
-  /// Of roll and pitch in the last packet, while Initializing; nothing without an attitude.
+  /// Sigma of roll and pitch in the last packet, while Initializing; nothing without an attitude.
   std::optional<double> tilt_sigma_deg() const { return tilt_sigma_deg_; }
   /// The last estimate [m/s^2].
   const Eigen::Vector3d& accel_bias() const { return accel_bias_; }

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "common/cli.hpp"
 #include "common/findings.hpp"
 #include "common/json_text.hpp"
 #include "common/text.hpp"
@@ -14,7 +15,6 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
-#include "program/program.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {

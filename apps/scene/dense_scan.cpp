@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/dense_scan.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <bit>
 
 #include "edged/camera/undistort.hpp"
+#include "report/point_cloud.hpp"
 
 namespace edged {
 
@@ -59,11 +58,8 @@ std::string dense_ply(const DenseScans& scans) {
   static_assert(std::endian::native == std::endian::little, "points are written as they lie in memory");
   std::size_t count = 0;
   for (const DenseScan& scan : scans) count += scan.points.size();
-  std::string ply = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment points in the world (z up) [m]; sigma: along the ray [m]\nelement "
-      "vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty float sigma\nproperty uchar "
-      "red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-      count);
+  std::string ply = ply_header(true, {"points in the world (z up) [m]; sigma: along the ray [m]"}, count,
+                               "float x, float y, float z, float sigma, uchar red, uchar green, uchar blue");
   for (const DenseScan& scan : scans) {
     for (const auto& [p_W, sigma_m, grey] : scan.points) {
       const Eigen::Vector4f numbers = Eigen::Vector4d(p_W.x(), p_W.y(), p_W.z(), sigma_m).cast<float>();

@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <utility>
 
 #include "common/files.hpp"

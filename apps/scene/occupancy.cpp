@@ -4,7 +4,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "common/files.hpp"
 #include "edged/core/check.hpp"
 #include "edged/occupancy/occupancy_scan.hpp"
+#include "report/point_cloud.hpp"
 
 namespace edged {
 namespace {
@@ -35,7 +35,7 @@ std::string header_of(const char* kind, const octomap::OcTree& tree) {
   return fmt::format("{}\nid {}\nsize {}\nres {}\ndata\n", kind, tree.getTreeType(), tree.size(), tree.getResolution());
 }
 
-/// Of the ROS map server: y up.
+/// The picture of the ROS map server: y up.
 cv::Mat picture_of(const OccupancySlice& slice) {
   cv::Mat picture(slice.cells.size(), CV_8UC1, cv::Scalar(kUnknownCell));
   picture.setTo(kFree, slice.cells == OccupancySlice::kFree);
@@ -76,11 +76,8 @@ octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::s
 
 std::string voxels_ply(const octomap::OcTree& tree) {
   const std::vector<Eigen::Vector3f> centres = occupied_voxels(tree);
-  std::string ply = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment centres of occupied voxels in the world (z up) [m]; size: their "
-      "edge [m]\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty float "
-      "size\nend_header\n",
-      centres.size());
+  std::string ply = ply_header(true, {"centres of occupied voxels in the world (z up) [m]; size: their edge [m]"},
+                               centres.size(), "float x, float y, float z, float size");
   for (const Eigen::Vector3f& p : centres) {
     const std::array vertex = {p.x(), p.y(), p.z(), static_cast<float>(tree.getResolution())};
     ply.append(reinterpret_cast<const char*>(vertex.data()), sizeof(vertex));

@@ -16,9 +16,10 @@
 
 namespace edged {
 
-/// Of points with four observations and more: voxels of those whose depth is known to half a voxel are occupied, by how
-/// likely they hold it. The rays to all of them are free up to a voxel and three sigmas before the point. What no ray
-/// crosses stays unknown. Dense points of frames only make voxels occupied. voxel_m: edge of a voxel [m].
+/// The map of points with four observations and more: voxels of those whose depth is known to half a voxel are
+/// occupied, by how likely they hold it. The rays to all of them are free up to a voxel and three sigmas before the
+/// point. What no ray crosses stays unknown. Dense points of frames only make voxels occupied. voxel_m: edge of a voxel
+/// [m].
 octomap::OcTree occupancy_of(const Reconstruction& model, double voxel_m, std::span<const DenseScan> dense = {});
 
 /// The occupied voxels: centres and edge, binary.

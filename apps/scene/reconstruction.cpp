@@ -10,6 +10,7 @@
 
 #include "common/files.hpp"
 #include "common/json_text.hpp"
+#include "report/point_cloud.hpp"
 
 namespace edged {
 namespace {
@@ -23,98 +24,76 @@ using Image = Reconstruction::Image;
 /// Numbers of COLMAP begin at 1.
 std::uint32_t number_of(std::size_t index) { return static_cast<std::uint32_t>(index + 1); }
 
-class Binary {
- public:
+/// A file of a model: as text, and binary.
+struct ModelFile {
+  std::string text, binary;
+
+  /// A number for both.
   template <typename T>
-  Binary& operator<<(const T& x) {
-    bytes.append(reinterpret_cast<const char*>(&x), sizeof(x));
+  ModelFile& add(const T& number) {
+    return word(fmt::format("{}", number)).raw(number);
+  }
+  ModelFile& word(const std::string& word) {
+    text += (text.back() == '\n' ? "" : " ") + word;
     return *this;
   }
-  Binary& count(std::size_t n) { return *this << static_cast<std::uint64_t>(n); }
-  std::string bytes;
+  template <typename T>
+  ModelFile& raw(const T& number) {
+    binary.append(reinterpret_cast<const char*>(&number), sizeof(number));
+    return *this;
+  }
+  ModelFile& count(std::size_t n) { return raw(static_cast<std::uint64_t>(n)); }
+  void end_line() { text += '\n'; }
 };
 
-std::string cameras_text(const Reconstruction& model) {
-  std::string text = "# CAMERA_ID MODEL WIDTH HEIGHT fx fy cx cy\n";
-  for (std::size_t i = 0; i < model.cameras.size(); ++i) {
-    const CameraModel& c = model.cameras[i].pinhole;
-    text += fmt::format("{} PINHOLE {} {} {} {} {} {}\n", number_of(i), c.width(), c.height(), c.fx(), c.fy(),
-                        c.cx() + kCorner_px, c.cy() + kCorner_px);
-  }
-  return text;
-}
-
-std::string cameras_binary(const Reconstruction& model) {
-  Binary out;
+ModelFile cameras_file(const Reconstruction& model) {
+  ModelFile out{"# CAMERA_ID MODEL WIDTH HEIGHT fx fy cx cy\n", ""};
   out.count(model.cameras.size());
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     const CameraModel& c = model.cameras[i].pinhole;
-    out << number_of(i) << kPinhole;
-    out.count(static_cast<std::size_t>(c.width())).count(static_cast<std::size_t>(c.height()));
-    out << c.fx() << c.fy() << c.cx() + kCorner_px << c.cy() + kCorner_px;
+    out.add(number_of(i)).word("PINHOLE").raw(kPinhole);
+    for (const int pixels : {c.width(), c.height()}) out.add(static_cast<std::uint64_t>(pixels));
+    for (const double x : {c.fx(), c.fy(), c.cx() + kCorner_px, c.cy() + kCorner_px}) out.add(x);
+    out.end_line();
   }
-  return out.bytes;
+  return out;
 }
 
-std::string images_text(const Reconstruction& model) {
-  std::string text = "# IMAGE_ID QW QX QY QZ TX TY TZ (of T_C_W) CAMERA_ID NAME, then its X Y POINT3D_ID\n";
-  for (std::size_t i = 0; i < model.images.size(); ++i) {
-    const Image& image = model.images[i];
-    const SE3 T_C_W = image.T_W_C.inverse();
-    const Eigen::Quaterniond& q = T_C_W.rotation();
-    const Eigen::Vector3d& p = T_C_W.translation();
-    text += fmt::format("{} {} {} {} {} {} {} {} {} {}\n", number_of(i), q.w(), q.x(), q.y(), q.z(), p.x(), p.y(),
-                        p.z(), number_of(image.camera), image.file);
-    const char* blank = "";
-    for (const auto& [feature, pixel, grey, point] : image.observations) {
-      text += fmt::format("{}{} {} {}", blank, pixel.x() + kCorner_px, pixel.y() + kCorner_px,
-                          point == Reconstruction::kNone ? "-1" : fmt::format("{}", point + 1));
-      blank = " ";
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-std::string images_binary(const Reconstruction& model) {
-  Binary out;
+ModelFile images_file(const Reconstruction& model) {
+  ModelFile out{"# IMAGE_ID QW QX QY QZ TX TY TZ (of T_C_W) CAMERA_ID NAME, then its X Y POINT3D_ID\n", ""};
   out.count(model.images.size());
   for (std::size_t i = 0; i < model.images.size(); ++i) {
     const Image& image = model.images[i];
     const SE3 T_C_W = image.T_W_C.inverse();
     const Eigen::Quaterniond& q = T_C_W.rotation();
     const Eigen::Vector3d& p = T_C_W.translation();
-    out << number_of(i) << q.w() << q.x() << q.y() << q.z() << p.x() << p.y() << p.z() << number_of(image.camera);
-    out.bytes.append(image.file.c_str(), image.file.size() + 1);
+    out.add(number_of(i));
+    for (const double x : {q.w(), q.x(), q.y(), q.z(), p.x(), p.y(), p.z()}) out.add(x);
+    out.add(number_of(image.camera)).word(image.file);
+    out.end_line();
+    out.binary.append(image.file.c_str(), image.file.size() + 1);
     out.count(image.observations.size());
-    for (const auto& [feature, pixel, grey, point] : image.observations)
-      out << pixel.x() + kCorner_px << pixel.y() + kCorner_px
-          << (point == Reconstruction::kNone ? ~std::uint64_t{0} : static_cast<std::uint64_t>(point + 1));
+    for (const auto& [feature, pixel, grey, point] : image.observations) {
+      const bool none = point == Reconstruction::kNone;
+      out.add(pixel.x() + kCorner_px).add(pixel.y() + kCorner_px).word(none ? "-1" : fmt::format("{}", point + 1));
+      out.raw(none ? ~std::uint64_t{0} : static_cast<std::uint64_t>(point + 1));
+    }
+    out.end_line();
   }
-  return out.bytes;
+  return out;
 }
 
-std::string points_text(const Reconstruction& model) {
-  std::string text = "# POINT3D_ID X Y Z R G B ERROR, then its IMAGE_ID POINT2D_IDX\n";
-  for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const auto& [p, covariance, normal, grey, error_px, all] = model.points[i];
-    text += fmt::format("{} {} {} {} {} {} {} {}", i + 1, p.x(), p.y(), p.z(), grey, grey, grey, error_px);
-    for (const auto& [image, observation] : all) text += fmt::format(" {} {}", number_of(image), observation);
-    text += '\n';
-  }
-  return text;
-}
-
-std::string points_binary(const Reconstruction& model) {
-  Binary out;
+ModelFile points_file(const Reconstruction& model) {
+  ModelFile out{"# POINT3D_ID X Y Z R G B ERROR, then its IMAGE_ID POINT2D_IDX\n", ""};
   out.count(model.points.size());
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     const auto& [p, covariance, normal, grey, error_px, all] = model.points[i];
-    out << static_cast<std::uint64_t>(i + 1) << p.x() << p.y() << p.z() << grey << grey << grey << error_px;
-    out.count(all.size());
-    for (const auto& [image, observation] : all) out << number_of(image) << static_cast<std::uint32_t>(observation);
+    out.add(static_cast<std::uint64_t>(i + 1)).add(p.x()).add(p.y()).add(p.z());
+    out.add(grey).add(grey).add(grey).add(error_px).count(all.size());
+    for (const auto& [image, observation] : all) out.add(number_of(image)).add(static_cast<std::uint32_t>(observation));
+    out.end_line();
   }
-  return out.bytes;
+  return out;
 }
 
 }  // namespace
@@ -122,12 +101,13 @@ std::string points_binary(const Reconstruction& model) {
 void write_colmap(const std::filesystem::path& folder, const Reconstruction& model) {
   const std::filesystem::path binary = folder / "sparse" / "0", text = folder / "sparse_text" / "0";
   for (const std::filesystem::path& each : {binary, text}) make_picture_folder(each);
-  write_file(binary / "cameras.bin", cameras_binary(model));
-  write_file(binary / "images.bin", images_binary(model));
-  write_file(binary / "points3D.bin", points_binary(model));
-  write_file(text / "cameras.txt", cameras_text(model));
-  write_file(text / "images.txt", images_text(model));
-  write_file(text / "points3D.txt", points_text(model));
+  const auto write = [&](const std::string& name, const ModelFile& file) {
+    write_file(binary / (name + ".bin"), file.binary);
+    write_file(text / (name + ".txt"), file.text);
+  };
+  write("cameras", cameras_file(model));
+  write("images", images_file(model));
+  write("points3D", points_file(model));
 }
 
 std::string transforms_json(const Reconstruction& model) {
@@ -151,15 +131,12 @@ std::string transforms_json(const Reconstruction& model) {
 }
 
 std::string points_ply(const Reconstruction& model) {
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment points in the world (z up) [m]; normal: towards the cameras; p_*: covariance "
-      "[m^2] with observations of 1 px\nelement vertex {}\n",
-      model.points.size());
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) text += fmt::format("property float {}\n", name);
-  for (const char* name : {"red", "green", "blue"}) text += fmt::format("property uchar {}\n", name);
-  for (const char* name : {"p_xx", "p_xy", "p_xz", "p_yy", "p_yz", "p_zz"})
-    text += fmt::format("property float {}\n", name);
-  text += "end_header\n";
+  std::string text = ply_header(
+      false,
+      {"points in the world (z up) [m]; normal: towards the cameras; p_*: covariance [m^2] with observations of 1 px"},
+      model.points.size(),
+      "float x, float y, float z, float nx, float ny, float nz, uchar red, uchar green, uchar blue, float p_xx, float "
+      "p_xy, float p_xz, float p_yy, float p_yz, float p_zz");
   for (const Reconstruction::Point& point : model.points) {
     const Eigen::Vector3d &p = point.p_W, &n = point.towards_cameras;
     const Eigen::Matrix3d& P = point.covariance;

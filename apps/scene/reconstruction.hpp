@@ -74,9 +74,9 @@ void triangulate(Reconstruction& model);
 /// cameras, images and points3D of a model of COLMAP: binary in sparse/0, as text in sparse_text/0. Throws InputError
 /// if they cannot be written.
 void write_colmap(const std::filesystem::path& folder, const Reconstruction& model);
-/// nerfstudio's; images are in images/ beside it.
+/// transforms.json of nerfstudio; images are in images/ beside it.
 std::string transforms_json(const Reconstruction& model);
-/// With grey as colour, the direction to the cameras as normal, and the upper triangle of the covariance.
+/// points.ply, with grey as colour, the direction to the cameras as normal, and the upper triangle of the covariance.
 std::string points_ply(const Reconstruction& model);
 
 }  // namespace edged

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/command.hpp"
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
