@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace {
@@ -51,7 +51,7 @@ CameraModel read_basalt_camera(const YamlReader& node, const std::vector<double>
   if (type == basalt_types().end()) {
     node.at("camera_type")
         .fail(fmt::format("camera type {} is not supported; these are: {}", name,
-                          fmt::join(basalt_types() | std::views::transform(&BasaltType::name), ", ")));
+                          fmt::join(texts_of(basalt_types(), &BasaltType::name), ", ")));
   }
   const YamlReader values = node.at("intrinsics");
   Intrinsics in{size[0], size[1], {}, std::string(type->distortion), {}};

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
@@ -61,10 +60,10 @@ void add_cameras(Calibration& out, const Lens& lens, Sees sees) {
 
 /// "omni, ds, ...": the camera models of Kalibr beside pinhole.
 std::string camera_model_names() {
-  const auto is_projection = [](const LensModel& lens) { return lens.projection_parameters > 0; };
-  return fmt::format(
-      "{}",
-      fmt::join(lens_models() | std::views::filter(is_projection) | std::views::transform(&LensModel::name), ", "));
+  std::vector<std::string_view> names;
+  for (const LensModel& lens : lens_models())
+    if (lens.projection_parameters > 0) names.push_back(lens.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Distortion distortion_of(const YamlReader& place, const Intrinsics& in) {

@@ -5,7 +5,6 @@
 #include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
@@ -18,7 +17,7 @@ std::string camera_list(const auto& cameras) {
   const auto described = [](const auto& camera) {
     return fmt::format("{} ({})", camera.name, kind_name(camera.modality));
   };
-  return cameras.empty() ? "none" : fmt::format("{}", fmt::join(cameras | std::views::transform(described), ", "));
+  return cameras.empty() ? "none" : fmt::format("{}", fmt::join(texts_of(cameras, described), ", "));
 }
 
 [[noreturn]] void refuse(const Rig& rig, const DatasetInfo& info, Modality modality, const std::string& reason) {

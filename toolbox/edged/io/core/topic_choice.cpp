@@ -7,11 +7,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <ranges>
 #include <tuple>
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 
@@ -67,7 +67,7 @@ std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role)
 
 std::string listed(const std::vector<Topic>& topics, const std::vector<std::size_t>& which) {
   const auto name = [&topics](std::size_t i) { return topics[i].name; };
-  return which.empty() ? "none" : fmt::format("{}", fmt::join(which | std::views::transform(name), ", "));
+  return which.empty() ? "none" : fmt::format("{}", fmt::join(texts_of(which, name), ", "));
 }
 
 std::size_t wanted_topic(const std::vector<Topic>& topics, Role role, const std::string& name,
@@ -113,7 +113,7 @@ void check_names(const TopicWishes& wishes) {
 [[noreturn]] void refuse_without_sensor(const std::vector<Topic>& topics, const std::string& file) {
   const auto described = [](const Topic& topic) { return fmt::format("{} ({})", topic.name, topic.type); };
   throw InputError::format("{}: no events, images or IMU among its topics: {}", file,
-                           fmt::join(topics | std::views::transform(described), ", "));
+                           fmt::join(texts_of(topics, described), ", "));
 }
 
 /// dvs_msgs of 2015 has other fields under the same type name.

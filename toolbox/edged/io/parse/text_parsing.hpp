@@ -20,6 +20,14 @@
 
 namespace edged {
 
+/// The texts of the elements of a range, for fmt::join. std::views would do, but clang 14 cannot compile them.
+template <class Range, class Text>
+std::vector<std::string> texts_of(const Range& range, Text text) {
+  std::vector<std::string> texts;
+  for (const auto& element : range) texts.emplace_back(std::invoke(text, element));
+  return texts;
+}
+
 /// A file as blocks of complete lines. Throws InputError if it is not readable or not text (no line end in a block).
 class BlockReader {
  public:
