@@ -185,7 +185,7 @@ class LivePage(WithFlight):
         self.assert_refused(edged("run", self.flight, "--serve=192.0.2.1:8000"), "--serve", "192.0.2.1:8000")
         self.assert_refused(edged("run", self.flight, "--serve=eighty"), "--serve", "'eighty'", "--serve=8765", code=2)
         self.assert_refused(edged("run", self.flight, "--serve=70000"), "--serve", "70000", code=2)
-        self.assert_refused(edged("run", self.flight, self.flight, "--serve"), "one recording", code=2)
+        self.assert_refused(edged("run", self.flight, self.flight, "--serve"), "--serve", "one recording", code=2)
         self.assert_refused(edged("run", self.flight, "--serve", "9000"), "--serve=PORT", code=2)
 
     def watch(self, browser, width, dark):
