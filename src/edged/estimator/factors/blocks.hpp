@@ -50,7 +50,7 @@ enum class BlockKind : std::uint8_t {
 struct BlockKey {
   BlockKind kind;
   std::uint64_t id;  ///< state number, FeatureId, number of the block (RandomWalkParameter), index of the camera, or 0
-  auto operator<=>(const BlockKey&) const = default;
+  auto operator<=>(const BlockKey&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 sees a null in it
 };
 
 /// The one block of the IMU's scale and axes.

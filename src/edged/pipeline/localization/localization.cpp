@@ -21,6 +21,7 @@ TrackedImage without(TrackedImage image, const std::vector<FeatureId>& outliers)
 /// The records of a step: the public API calls the map frame W.
 std::vector<KeyframeRecord> in_map(const SE3& T_M_O, std::vector<MarginalizedKeyframe> in_O) {
   std::vector<KeyframeRecord> in_W;
+  in_W.reserve(in_O.size());
   for (MarginalizedKeyframe& keyframe : in_O)
     in_W.push_back({keyframe.t, T_M_O * keyframe.T_O_B, std::move(keyframe.views)});
   return in_W;
