@@ -150,7 +150,7 @@ bool is_seen(const MappedRoom& room, const Scene& scene, const Vector3d& p_W) {
   });
 }
 
-/// Of the surface and of the free space that keyframes see, each in steps of 0.15 m, the known shares.
+/// The known shares of the surface and of the free space that keyframes see, each in steps of 0.15 m.
 struct Completeness {
   int surface = 0, occupied = 0, space = 0, free = 0;
 };

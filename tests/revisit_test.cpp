@@ -104,7 +104,7 @@ TEST(Revisits, AreFoundAndKnownInTheEndToTheSameBitEachTime) {
   EXPECT_LT(found->map_matches.front().keyframe, found->t - std::chrono::seconds(1));
 }
 
-/// Of a flight whose lens is covered for 4 s while it goes on: the mean position error of the last 5 s, once the first
+/// For a flight whose lens is covered for 4 s while it goes on: the mean position error of the last 5 s, once the first
 /// 12 s are laid onto the truth [m].
 double error_after_cover(const Flight& flight, Mode mode, bool with_map) {
   const FlightRun run = run_with(flight, mode, with_map);

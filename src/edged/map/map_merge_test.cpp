@@ -97,7 +97,7 @@ TEST(MapMerge, BothLieInOneFrame) {
   EXPECT_NO_THROW(saved_map_from_bytes(to_bytes(both)));  // in order of time, with valid values
 }
 
-/// Of the other map's first two keyframes, of which one is inactive: their uncertainty is as if it were active.
+/// Checks the other map's first two keyframes, of which one is inactive: their uncertainty is as if it were active.
 TEST(MapMerge, KeepsTheUncertaintyOfInactiveKeyframes) {
   const Wall wall(1);
   const SavedMap map = wall.map_from(places(-0.5, 5), SE3());

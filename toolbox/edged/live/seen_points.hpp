@@ -16,7 +16,7 @@ class SeenPoints {
  public:
   explicit SeenPoints(std::size_t most) : most_(most) {}
 
-  /// Of a keyframe. A landmark has the place of its last keyframe.
+  /// Adds the landmarks of a keyframe. A landmark has the place of its last keyframe.
   void add(std::span<const Landmark> landmarks) {
     for (const Landmark& landmark : landmarks) {
       if (landmark.id % every_ != 0 || !landmark.p_W.allFinite()) continue;
