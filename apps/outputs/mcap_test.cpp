@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Results as MCAP, read by our own reader; tests/mcap_test.py uses another one.
+// Results as MCAP, read by our own reader; tests/program/mcap_test.py uses another one.
 #include "outputs/mcap.hpp"
 
 #include <gtest/gtest.h>

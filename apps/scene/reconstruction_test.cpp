@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Points from exact and from wrong observations. The files are read by tests/export_test.py.
+// Points from exact and from wrong observations. The files are read by tests/program/export_test.py.
 #include "scene/reconstruction.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Frames byte by byte. tests/mavlink_test.py reads them with a decoder of its own.
+// Frames byte by byte. tests/program/mavlink_test.py reads them with a decoder of its own.
 #include "edged/autopilot/mavlink.hpp"
 
 #include <gtest/gtest.h>

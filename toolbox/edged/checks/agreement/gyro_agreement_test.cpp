@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Camera against gyro: analytic turns (tests/cli_recordings_test.py has generated images).
+// Camera against gyro: analytic turns (tests/program/cli_recordings_test.py has generated images).
 #include "edged/checks/agreement/gyro_agreement.hpp"
 
 #include <gtest/gtest.h>

@@ -73,10 +73,10 @@ TEST(RosWriter, StampsThatRosCannotHoldAreRefused) {
     }
 }
 
-/// Output of tests/bag_oracle.py, which uses the reader and writer of ROS.
+/// Output of tests/program/bag_oracle.py, which uses the reader and writer of ROS.
 std::string oracle(const std::string& arguments) {
   const std::string command =
-      std::string("/usr/bin/python3 " EDGED_SOURCE_DIR "/tests/bag_oracle.py ") + arguments + " 2>&1";
+      std::string("/usr/bin/python3 " EDGED_SOURCE_DIR "/tests/program/bag_oracle.py ") + arguments + " 2>&1";
   std::string text;
   FILE* pipe = ::popen(command.c_str(), "r");
   char piece[4096];

@@ -15,7 +15,7 @@ import shlex
 import subprocess
 import unittest
 
-SOURCE = pathlib.Path(__file__).resolve().parent.parent
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["EDGED_BUILD"])
 
 

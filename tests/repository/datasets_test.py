@@ -15,12 +15,12 @@ import types
 import unittest
 import unittest.mock
 
-from program import EDGED, WithFolder, edged
+import yaml
 
-BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
-sys.path.insert(0, str(BENCH))
+BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+sys.path[:0] = [str(BENCH), str(BENCH.parent / "tests/program")]
 import sensor_frames  # noqa: E402
-import yaml  # noqa: E402
+from program import EDGED, WithFolder, edged  # noqa: E402
 
 
 def script(name):

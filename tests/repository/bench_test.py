@@ -19,11 +19,10 @@ import types
 import unittest
 import unittest.mock
 
-from browser import CHROMIUM, Browser
-
-BENCH = pathlib.Path(__file__).resolve().parent.parent / "bench"
-sys.path.insert(0, str(BENCH))
+BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+sys.path[:0] = [str(BENCH), str(BENCH.parent / "tests/program")]
 import harness  # noqa: E402
+from browser import CHROMIUM, Browser  # noqa: E402
 
 
 def bench(name, *args):

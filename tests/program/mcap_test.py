@@ -15,7 +15,7 @@ import unittest
 from program import WithFlight, edged
 
 PACKAGES = ["@mcap/core@2.2.2", "fzstd@0.1.1", "@foxglove/schemas@2.1.0"]
-LAYOUT = pathlib.Path(__file__).resolve().parent.parent / "config/foxglove/edged.json"
+LAYOUT = pathlib.Path(__file__).resolve().parents[2] / "config/foxglove/edged.json"
 READER = pathlib.Path(__file__).with_name("mcap_reader.mjs")
 
 

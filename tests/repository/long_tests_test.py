@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-TOOL = pathlib.Path(__file__).resolve().parent.parent / "tools" / "long_tests.py"
+TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "long_tests.py"
 OUTPUT = """      Start   1: Lie.IsRight
  1/3 Test   #1: Lie.IsRight ......................   Passed   19.90 sec
  2/3 Test  #20: Stress.PureRotationStaysGood .....   Passed   55.00 sec

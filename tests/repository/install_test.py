@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 import unittest
 
-SOURCE = pathlib.Path(__file__).resolve().parent.parent
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
 CONSUMER = SOURCE / "tests" / "consumer"
 TUTORIAL = SOURCE / "docs" / "tutorial.md"
 

@@ -9,11 +9,13 @@ import functools
 import pathlib
 import re
 import shlex
+import sys
 import unittest
 
-from program import edged
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/program"))
+from program import edged  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 DECISIONS = ROOT / "docs/decisions"
 
 

@@ -82,7 +82,7 @@ class CommandLine(WithFolder):
     def test_version_names_the_program(self):
         version = edged("--version").stdout
         self.assertRegex(version, r"^edged \d+\.\d+\.\d+")
-        citation = pathlib.Path(__file__).parent.parent / "CITATION.cff"
+        citation = pathlib.Path(__file__).parents[2] / "CITATION.cff"
         self.assertIn(f"\nversion: {version.split()[1]}\n", citation.read_text())
 
 

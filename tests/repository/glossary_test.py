@@ -7,10 +7,12 @@ import json
 import os
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/program"))  # of option_keys
 HEADERS = sorted(path for folder in ("include", "toolbox") for path in (ROOT / folder).rglob("*.hpp*")
                  if "include" in path.relative_to(ROOT).parts)
 MODULE = [*(ROOT / "python/edged").glob("*.py"), *(ROOT / "python/edged").glob("*.pyi")]
