@@ -71,7 +71,7 @@ def check(path, name, errors, warnings):
         if len(lines) < 3 or not lines[2].startswith("// "):
             errors.append(f"{name}:3: says in no sentence what the file is")
     if name.parts[0] == "src" and "test" not in path.stem and path.stem not in WORLD_EDGES:
-        errors += [f"{name}:{line}: {word} within the method: the frame is O or M (docs/decisions/031-coordinate-frames.md)"
+        errors += [f"{name}:{line}: {word} within the method: the frame is O or M (docs/decisions/map/031-coordinate-frames.md)"
                    for line, text_line in enumerate(lines, 1) for word in WORLD.findall(text_line)]
     for (soft, hard), what, sizes in ((FILE_LINES, "file", [(1, len(lines))]),
                                       (FUNCTION_LINES, "function", functions(text))):

@@ -22,14 +22,14 @@ std::string mode_name(Mode mode);
 /// The mode of that name. Throws InputError that lists them.
 Mode parse_mode(const std::string& name);
 
-/// When a packet is cut (docs/decisions/010-packet-rule.md).
+/// When a packet is cut (docs/decisions/input/010-packet-rule.md).
 struct PacketizerConfig {
   double events_per_pixel = 0.35;      ///< a packet is cut after this many new events per pixel
   double window_per_pixel = 0.35;      ///< events that a packet repeats from those before it, per pixel
   double max_age_s = 0.25;             ///< but none older than this: at standstill older ones are noise
   double max_interval_s = 0.04;        ///< longest time between two cuts (at standstill)
   double min_interval_s = 0.03;        ///< shortest time between two cuts, unless a frame arrives
-  bool remove_flicker = true;          ///< leave out events that lamps cause (docs/decisions/044-flicker.md)
+  bool remove_flicker = true;          ///< leave out events that lamps cause (docs/decisions/vision/044-flicker.md)
   int max_waiting_events = 4'000'000;  ///< in packets that wait for the IMU; 16 bytes each
   void visit(ConfigFields& fields);
 };

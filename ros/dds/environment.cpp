@@ -18,7 +18,7 @@ namespace edged::ros2 {
 namespace {
 
 constexpr std::uint32_t kMostDomains = 232;       // beyond it the ports of RTPS end
-constexpr std::int64_t kReceiveBuffer = 4 << 20;  // [bytes]: 64 kB messages at 100 MB/s (docs/decisions/042)
+constexpr std::int64_t kReceiveBuffer = 4 << 20;  // [bytes]: 64 kB messages at 100 MB/s (docs/decisions: 042)
 // A writer is deleted at once, though a subscriber that was killed has not confirmed its last messages.
 constexpr const char* kInternal =
     "<Internal><SocketReceiveBufferSize max=\"8 MiB\"/>"

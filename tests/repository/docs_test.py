@@ -55,7 +55,7 @@ class Commands(unittest.TestCase):
     def test_commands_on_all_pages_have_flags_and_options_that_there_are(self):
         known = set(re.findall(r"^  ([a-z0-9]+) ", edged("--help").stdout, re.MULTILINE)) | {"manual"}
         count = 0
-        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted(DECISIONS.glob("*.md"))]:
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
             for line in commands_of(page):
                 with self.subTest(page=page.name, line=line):
                     words = shlex.split(line)
@@ -110,7 +110,7 @@ def missing_links(page):
 
 
 class Decisions(unittest.TestCase):
-    PAGES = sorted(DECISIONS.glob("[0-9]*.md"))
+    PAGES = sorted(DECISIONS.glob("*/[0-9]*.md"), key=lambda page: page.name)
 
     def test_each_states_context_decision_evidence_and_consequences_in_short(self):
         self.assertGreater(len(self.PAGES), 24)
@@ -125,11 +125,11 @@ class Decisions(unittest.TestCase):
 
     def test_the_index_has_each_page_once_by_its_title(self):
         rows = re.findall(r"^- (\d+) \[(.*)\]\((.*)\)$", (DECISIONS / "README.md").read_text(), re.MULTILINE)
-        self.assertEqual(rows, [(page.name[:3], page.read_text().splitlines()[0].split(". ", 1)[1], page.name)
-                                for page in self.PAGES])
+        self.assertEqual(sorted(rows), [(page.name[:3], page.read_text().splitlines()[0].split(". ", 1)[1],
+                                         str(page.relative_to(DECISIONS))) for page in self.PAGES])
 
     def test_links_lead_to_files_that_exist(self):
-        for page in [*DECISIONS.glob("*.md"), ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md"]:
+        for page in [*DECISIONS.rglob("*.md"), ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md"]:
             with self.subTest(page=page.name):
                 self.assertEqual(missing_links(page), [])
 

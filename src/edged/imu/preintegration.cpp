@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// Constants that were chosen (docs/decisions/022-imu-damage.md).
+/// Constants that were chosen (docs/decisions/estimator/022-imu-damage.md).
 struct ImuTuning {
   double jump_share = 0.3;                               ///< share of a jump beyond the usual that is uncertain
   double usual_gyro_jump = 1.0, usual_accel_jump = 4.0;  ///< [rad/s], [m/s^2] between two samples of a body in flight
