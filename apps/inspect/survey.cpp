@@ -183,6 +183,11 @@ std::string external_survey_text(const std::string& name, const ExternalStatisti
   return text;
 }
 
+/// What was recorded of a camera, or of the first ones, under these names.
+std::string camera_text(const RecordingStatistics& s, const std::string& events, const std::string& frames) {
+  return (s.events.count > 0 ? events_text(s, events) : "") + (s.frames.count > 0 ? frames_text(s, frames) : "");
+}
+
 nlohmann::ordered_json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
@@ -196,12 +201,10 @@ std::string to_text(const RecordingStatistics& s) {
   text += cameras_text(s.info);
   text += survey_line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));
   const bool several = !s.more.empty();
-  if (s.events.count > 0) text += events_text(s, several ? s.info.event_camera : "events");
-  if (s.frames.count > 0) text += frames_text(s, several ? s.info.frame_camera : "frames");
+  text += camera_text(s, several ? s.info.event_camera : "events", several ? s.info.frame_camera : "frames");
   for (const RecordingStatistics& camera : s.more) {
-    if (camera.events.count > 0) text += events_text(camera, camera.camera());
-    if (camera.frames.count > 0) text += frames_text(camera, camera.camera());
-    if (camera.events.count + camera.frames.count == 0) text += survey_line(camera.camera(), "nothing recorded");
+    const std::string recorded = camera_text(camera, camera.camera(), camera.camera());
+    text += recorded.empty() ? survey_line(camera.camera(), "nothing recorded") : recorded;
   }
   if (s.imu.count > 0) text += imu_text(s);
   for (const auto& [name, survey] : s.external) text += external_survey_text(name, survey);

@@ -49,21 +49,23 @@ void Snapshots::add(const Step& step) {
   if (step.keyframe) points_.add(step.landmarks);
 }
 
-void Snapshots::take_picture(const Step& step) {
+bool Snapshots::is_due(Timestamp t, bool events, bool frame) {
   constexpr Duration kPatience = std::chrono::milliseconds(200);  // for a step with images of both cameras
-  const auto seen_by = [&step](Modality modality) {               // the first camera of the kind
+  events_come_ |= events;
+  frames_come_ |= frame;
+  if (!events && !frame) return false;
+  if (!due_) due_ = t;
+  const bool complete = events == events_come_ && frame == frames_come_;
+  return t >= (complete ? *due_ : *due_ + kPatience);
+}
+
+void Snapshots::take_picture(const Step& step) {
+  const auto seen_by = [&step](Modality modality) {  // the first camera of the kind
     const CameraStep* camera = step.find(modality);
     return camera && !camera->image.empty() ? camera : nullptr;
   };
   const CameraStep *events = seen_by(Modality::Events), *frame = seen_by(Modality::Frames);
-  events_come_ |= events != nullptr;
-  frames_come_ |= frame != nullptr;
-  if (!events && !frame) return;
-  if (!due_) due_ = step.t;
-  if (step.t < *due_) return;
-  if ((events_come_ && !events) || (frames_come_ && !frame)) {
-    if (step.t < *due_ + kPatience) return;
-  }
+  if (!is_due(step.t, events != nullptr, frame != nullptr)) return;
   const auto picture = [](const CameraStep* camera) {
     return camera ? track_picture(camera->image, camera->tracks, kWidest_px) : std::vector<unsigned char>{};
   };

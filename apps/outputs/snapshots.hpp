@@ -43,6 +43,8 @@ class Snapshots {
   };
 
   void take_picture(const Step& step);
+  /// Whether a picture is to be taken of a step with images of these cameras.
+  bool is_due(Timestamp t, bool events, bool frame);
 
   std::vector<Picture> pictures_;
   std::optional<Timestamp> due_;  ///< of the next picture

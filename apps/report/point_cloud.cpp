@@ -33,6 +33,13 @@ struct PlyHeader {
   throw InputError::format("{}: damaged ({}); run it again, or remove the file", file.string(), why);
 }
 
+/// Takes the property after those that are known.
+void add_property(PlyHeader& header, const std::string& type, const std::string& name) {
+  const bool is_float = type == "float";
+  (is_float ? header.floats : header.bytes)[name] = header.vertex_bytes;
+  header.vertex_bytes += is_float ? sizeof(float) : 1;
+}
+
 /// Moves `in` past the header.
 PlyHeader read_header(const std::filesystem::path& file, std::ifstream& in) {
   PlyHeader header;
@@ -46,8 +53,7 @@ PlyHeader read_header(const std::filesystem::path& file, std::ifstream& in) {
     if (what == "element" && !(std::istringstream(name) >> header.count)) refuse(file, "it has no number of points");
     if (what != "property") continue;
     if (type != "float" && type != "uchar") refuse(file, "its points have a property of another type");
-    (type == "float" ? header.floats : header.bytes)[name] = header.vertex_bytes;
-    header.vertex_bytes += type == "float" ? sizeof(float) : 1;
+    add_property(header, type, name);
   }
   if (line != "end_header") refuse(file, "its header has no end");
   for (const char* axis : {"x", "y", "z"})

@@ -95,38 +95,54 @@ struct Found {
   float px_per_w = 0.0F;  ///< pixels of the view per inverse depth
 };
 
+/// How far the pixel's place moves in a view, at most, with the inverse depth [px m].
+float speed_over(const InverseDepthRange& range, const ReferencePatch& reference,
+                 std::span<const EpipolarView* const> views) {
+  const float low = static_cast<float>(range.low), high = static_cast<float>(range.high);
+  float speed = 0.0F;
+  for (const EpipolarView* view : views)
+    for (const float w : {low, 0.5F * (low + high), high})
+      if (const auto place = view->place(reference.pixel, w)) speed = std::max(speed, place->by_inverse_depth.norm());
+  return speed;
+}
+
+/// Of the views that show the place, if at least half of them do.
+float mean_cost(const ReferencePatch& reference, std::span<const EpipolarView* const> views, float w) {
+  float sum = 0.0F;
+  int count = 0;
+  for (const EpipolarView* view : views) {
+    const float cost = cost_of(reference, *view, w);
+    if (!std::isnan(cost)) sum += cost, ++count;
+  }
+  return 2 * count >= static_cast<int>(views.size()) ? sum / static_cast<float>(count) : kUnrelated;
+}
+
+/// Whether another minimum, more than two steps away, is about as low as that at `best`.
+bool has_rival(const std::vector<float>& costs, std::ptrdiff_t best, float least_distinction) {
+  const float most = costs[static_cast<std::size_t>(best)] + least_distinction;
+  for (std::ptrdiff_t i = 1; i + 1 < std::ssize(costs); ++i) {
+    const float* cost = costs.data() + i;
+    if (std::abs(i - best) > 2 && cost[0] < most && cost[0] <= cost[-1] && cost[0] <= cost[1]) return true;
+  }
+  return false;
+}
+
 /// The minimum of the mean cost of the first views over the range.
 std::optional<Found> first_search(const ReferencePatch& reference, std::span<const EpipolarView* const> views,
                                   const InverseDepthRange& range, const SearchConfig& config) {
   const float low = static_cast<float>(range.low), high = static_cast<float>(range.high);
-  float speed = 0.0F;  // [px m]
-  for (const EpipolarView* view : views)
-    for (const float w : {low, 0.5F * (low + high), high})
-      if (const auto place = view->place(reference.pixel, w)) speed = std::max(speed, place->by_inverse_depth.norm());
+  const float speed = speed_over(range, reference, views);
   const int steps =
       std::min(config.most_steps, static_cast<int>((high - low) * speed / static_cast<float>(config.step_px)));
   if (steps < 4) return std::nullopt;  // no parallax
   const float step = (high - low) / static_cast<float>(steps);
   thread_local std::vector<float> costs;
-  costs.assign(static_cast<std::size_t>(steps) + 1, kUnrelated);
-  for (int i = 0; i <= steps; ++i) {
-    float sum = 0.0F;
-    int count = 0;
-    for (const EpipolarView* view : views) {
-      const float cost = cost_of(reference, *view, low + step * static_cast<float>(i));
-      if (!std::isnan(cost)) sum += cost, ++count;
-    }
-    if (2 * count >= static_cast<int>(views.size()))
-      costs[static_cast<std::size_t>(i)] = sum / static_cast<float>(count);
-  }
+  costs.clear();
+  for (int i = 0; i <= steps; ++i) costs.push_back(mean_cost(reference, views, low + step * static_cast<float>(i)));
   const auto best = std::ranges::min_element(costs);
   const std::ptrdiff_t at = best - costs.begin();
   if (*best > config.most_first_cost || at == 0 || at == steps) return std::nullopt;
-  for (std::ptrdiff_t i = 1; i < steps; ++i) {
-    const float* cost = costs.data() + i;
-    if (std::abs(i - at) > 2 && cost[0] < *best + config.least_distinction && cost[0] <= cost[-1] && cost[0] <= cost[1])
-      return std::nullopt;
-  }
+  if (has_rival(costs, at, config.least_distinction)) return std::nullopt;
   return Found{low + step * (static_cast<float>(at) + vertex(best[-1], best[0], best[1])), step};
 }
 

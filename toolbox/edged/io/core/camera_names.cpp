@@ -67,6 +67,15 @@ std::vector<std::string> named_by_words(const std::vector<std::string>& cameras,
   return names;
 }
 
+/// Those of one kind in the rig; none without a rig.
+std::vector<std::string> rig_names(const Rig* rig, Modality modality) {
+  std::vector<std::string> names;
+  if (rig)
+    for (const RigCamera& camera : rig->cameras)
+      if (camera.modality == modality) names.push_back(camera.name);
+  return names;
+}
+
 }  // namespace
 
 std::string kind_name(Modality modality) { return modality == Modality::Events ? "events" : "frames"; }
@@ -101,10 +110,7 @@ NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<s
                           const std::vector<std::string>& wanted, const std::string& file) {
   NamedStreams named;
   for (std::size_t i = 0; i < streams.size(); ++i) named.names.push_back(usual_camera_name(modality, i));
-  std::vector<std::string> cameras;
-  if (rig)
-    for (const RigCamera& camera : rig->cameras)
-      if (camera.modality == modality) cameras.push_back(camera.name);
+  const std::vector<std::string> cameras = rig_names(rig, modality);
   const auto is_among = [](const std::vector<std::string>& names) {
     return [&names](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
   };

@@ -41,6 +41,13 @@ std::optional<Role> role_of(const std::string& type) {
   return found == roles.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::vector<std::size_t> topics_with(const std::vector<Topic>& topics, Role role) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    if (topics[i].count > 0 && role_of(topics[i].type) == role) found.push_back(i);
+  return found;
+}
+
 const ExternalSensor* external_sensor_of(Role role) {
   return find_external_sensor(kRoleNames[static_cast<std::size_t>(role)]);
 }
@@ -55,9 +62,7 @@ namespace {
 bool is_chosen_by_itself(Role role, std::size_t fitting) { return fitting == 1 && role != Role::Velocity; }
 
 std::vector<std::size_t> candidates(const std::vector<Topic>& topics, Role role) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < topics.size(); ++i)
-    if (topics[i].count > 0 && role_of(topics[i].type) == role) found.push_back(i);
+  std::vector<std::size_t> found = topics_with(topics, role);
   // Ignores compressed copies of the same images.
   std::erase_if(found, [&](std::size_t i) {
     return std::ranges::any_of(found, [&](std::size_t j) { return topics[i].name == topics[j].name + "/compressed"; });

@@ -33,6 +33,9 @@ const ExternalSensor* external_sensor_of(Role role);
 /// The role of messages of that type ("dvs_msgs/EventArray"). Nothing for types that are not read.
 std::optional<Role> role_of(const std::string& type);
 
+/// The topics with messages whose type has the role.
+std::vector<std::size_t> topics_with(const std::vector<Topic>& topics, Role role);
+
 /// True if a topic of that type can have the role: by role_of(), or an Odometry for its twist.
 bool can_take(const std::string& type, Role role);
 

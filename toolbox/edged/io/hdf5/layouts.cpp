@@ -122,6 +122,12 @@ Duration offset_of(const H5File& file, std::string_view path) try {
   return Duration(0);
 }
 
+/// A data set of events: with fields of them, or rows of four numbers.
+bool has_event_shape(const H5Array& one) {
+  if (one.compound()) return one.has_fields({"x", "y", "p", "t"}) && one.columns() == 1;
+  return one.shape().size() == 2 && one.columns() == 4;
+}
+
 }  // namespace
 
 std::span<const Hdf5Layout> hdf5_layouts() { return kLayouts; }
@@ -176,9 +182,8 @@ std::optional<H5Events> H5Events::find(const H5File& file, const Hdf5Layout& lay
   const Duration offset = offset_of(file, layout.offset);
   std::vector<H5Array> arrays;
   if (auto one = root.empty() ? std::nullopt : file.find(root)) {
+    if (!has_event_shape(*one)) return std::nullopt;
     const Kind kind = one->compound() ? Kind::Fields : Kind::Rows;
-    if (kind == Kind::Rows && (one->shape().size() != 2 || one->columns() != 4)) return std::nullopt;
-    if (kind == Kind::Fields && !(one->has_fields({"x", "y", "p", "t"}) && one->columns() == 1)) return std::nullopt;
     arrays.push_back(std::move(*one));
     return H5Events(kind, std::move(arrays), offset, file.cut());
   }

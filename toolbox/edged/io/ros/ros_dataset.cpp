@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
@@ -52,10 +54,9 @@ Filled filled_in(const std::filesystem::path& bag, std::size_t topic) {
 ImuTopics choose_imu_topics(const std::filesystem::path& bag, const std::vector<Topic>& topics,
                             const WantedTopics& wanted) {
   if (wanted.contains("imu")) return {};
-  std::vector<std::size_t> all, both, gyro, accel;
-  for (std::size_t i = 0; i < topics.size(); ++i)
-    if (topics[i].count > 0 && role_of(topics[i].type) == Role::Imu) all.push_back(i);
+  const std::vector<std::size_t> all = topics_with(topics, Role::Imu);
   if (all.size() < 2) return {};
+  std::vector<std::size_t> both, gyro, accel;
   for (const std::size_t i : all) {
     const Filled filled = filled_in(bag, i);
     if (filled.gyro && filled.accel) both.push_back(i);
@@ -80,40 +81,43 @@ std::string info_topic_of(std::string name) {
   return name.substr(0, name.rfind('/') + 1) + "camera_info";
 }
 
+/// The first CameraInfo of each of these topics; nothing of one whose intrinsics cannot be used. Reads up to the last
+/// of them, so source must be at its beginning.
+std::map<std::size_t, CameraModel> read_camera_infos(MessageSource& source, std::set<std::size_t> missing) {
+  std::map<std::size_t, CameraModel> models;
+  while (!missing.empty()) {
+    const auto message = source.next();
+    if (!message) break;
+    if (missing.erase(message->topic) == 0) continue;
+    try {
+      models.emplace(message->topic, read_camera_info(WireReader(source.wire(), message->data)));
+    } catch (const Damage& damage) {
+      spdlog::warn(fmt::format("{}: intrinsics not used: {}", source.topics()[message->topic].name, damage.what()));
+    }
+  }
+  return models;
+}
+
 /// The intrinsics of the cameras of a bag, from the CameraInfo in the namespace of their topics (/dvs/camera_info of
-/// /dvs/events). Nothing without usable ones. Reads up to the first message of each, so source must be at its
-/// beginning.
+/// /dvs/events). Nothing without usable ones. source: at its beginning.
 std::optional<Calibration> read_bag_intrinsics(MessageSource& source, const TopicChoice& choice) {
-  std::map<std::size_t, std::optional<CameraModel>> models;  // by topic
+  std::set<std::size_t> infos;
   std::vector<std::optional<std::size_t>> topic_of_camera(choice.cameras.size());
   const std::vector<Topic>& topics = source.topics();
   for (std::size_t c = 0; c < choice.cameras.size(); ++c) {
     const std::string wanted = info_topic_of(topics[choice.cameras[c].topic].name);
     for (std::size_t i = 0; i < topics.size(); ++i)
       if (topics[i].name == wanted && topics[i].type == "sensor_msgs/CameraInfo" && topics[i].count > 0)
-        models[i].reset(), topic_of_camera[c] = i;
+        infos.insert(i), topic_of_camera[c] = i;
   }
-  for (std::size_t missing = models.size(); missing > 0;) {
-    const auto message = source.next();
-    if (!message) break;
-    const auto model = models.find(message->topic);
-    if (model == models.end() || model->second) continue;
-    --missing;
-    try {
-      model->second = read_camera_info(WireReader(source.wire(), message->data));
-    } catch (const Damage& damage) {
-      spdlog::warn(fmt::format("{}: intrinsics not used: {}", topics[message->topic].name, damage.what()));
-      models.erase(model);
-    }
-  }
-
+  const std::map<std::size_t, CameraModel> models = read_camera_infos(source, infos);
   Calibration calibration;
   calibration.has_extrinsics = calibration.has_imu_noise = false;
   for (std::size_t c = 0; c < choice.cameras.size(); ++c) {
     const auto model = topic_of_camera[c] ? models.find(*topic_of_camera[c]) : models.end();
-    if (model != models.end() && model->second)
+    if (model != models.end())
       calibration.rig.cameras.push_back(
-          {choice.cameras[c].name, choice.cameras[c].modality, *model->second, SE3(), Duration(0)});
+          {choice.cameras[c].name, choice.cameras[c].modality, model->second, SE3(), Duration(0)});
   }
   return calibration.rig.cameras.empty() ? std::nullopt : std::optional(std::move(calibration));
 }

@@ -176,15 +176,24 @@ std::optional<double> sigma_of(std::string_view field) {
   return sigma && *sigma >= 0.0 ? sigma : std::nullopt;
 }
 
+/// The field with the sigma of each value, in a line of so many fields; empty without sigmas. Nothing if their number
+/// fits neither one value nor all.
+std::optional<std::vector<std::size_t>> sigma_fields(const ExternalTable& form, std::size_t values,
+                                                     std::size_t fields) {
+  std::vector<std::size_t> sigmas = form.sigmas;
+  if (form.sigmas_follow)
+    for (std::size_t i = values + 1; i < fields; ++i) sigmas.push_back(i);
+  if (sigmas.size() == 1) return std::vector<std::size_t>(values, sigmas[0]);
+  return sigmas.empty() || sigmas.size() == values ? std::optional(std::move(sigmas)) : std::nullopt;
+}
+
 std::optional<ExternalSample> parse_external(std::string_view line, const ExternalSensor& sensor,
                                              const ExternalTable& form) {
   std::vector<std::string_view> fields;
   for (FieldReader reader(line); !reader.rest().empty();) fields.push_back(reader.next());
   const std::size_t n = sensor.columns.size();
-  std::vector<std::size_t> sigmas = form.sigmas;
-  if (form.sigmas_follow)
-    for (std::size_t i = n + 1; i < fields.size(); ++i) sigmas.push_back(i);
-  if (!sigmas.empty() && sigmas.size() != 1 && sigmas.size() != n) return std::nullopt;
+  const auto sigmas = sigma_fields(form, n, fields.size());
+  if (!sigmas) return std::nullopt;
   const auto field = [&fields](std::size_t i) { return i < fields.size() ? fields[i] : std::string_view(); };
   const std::optional<Timestamp> t = parse_stamp(field(form.columns.at[0]), form.columns.unit);
   if (!t) return std::nullopt;
@@ -193,7 +202,7 @@ std::optional<ExternalSample> parse_external(std::string_view line, const Extern
     const std::string_view text = field(form.columns.at[1 + i]);
     const auto value = parse_number(text);
     if (!value && lower_case(text) != "nan") return std::nullopt;
-    const auto sigma = sigmas.empty() ? 0.0 : sigma_of(field(sigmas.size() == 1 ? sigmas[0] : sigmas[i]));
+    const auto sigma = sigmas->empty() ? 0.0 : sigma_of(field((*sigmas)[i]));
     if (!sigma) return std::nullopt;
     numbers.values[i] = form.columns.scales[i] * value.value_or(0.0);
     numbers.sigmas[i] = value ? form.columns.scales[i] * *sigma : kNotMeasured;
