@@ -9,6 +9,7 @@
 #include "common/source.hpp"
 #include "common/text.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
+#include "edged/io/core/topic_choice.hpp"
 #include "edged/io/text/sample_files.hpp"
 
 namespace edged {
@@ -27,11 +28,12 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
           "are corrected from the first one on")
       ->check(CLI::Range(0.1, 10.0));
   command
-      .add_option("--topic", options.topics,
-                  "Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: events, frames, imu, truth, height, "
-                  "velocity, or the name of a camera; NAME none leaves it out; may be repeated "
-                  "[of several cameras the topics in the calibration (rostopic), else by name; else the only topic of "
-                  "a fitting type]")
+      .add_option(
+          "--topic", options.topics,
+          fmt::format("Topic of a ROS bag or stream of AEDAT4 as ROLE=NAME: {}, or the name of a camera; NAME none "
+                      "leaves it out; may be repeated [of several cameras the topics in the calibration (rostopic), "
+                      "else by name; else the only topic of a fitting type]",
+                      fmt::join(kRoleNames, ", ")))
       ->allow_extra_args(false);
   command
       .add_option("--from,--start", options.piece.from_s, "Skip what comes earlier [s from the start of the recording]")

@@ -3,7 +3,6 @@
 #include "dds/player.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
 #include "edged/core/check.hpp"
@@ -21,9 +20,6 @@ constexpr Duration kPacketTime = std::chrono::milliseconds(1), kClockPeriod = st
 constexpr Duration kLongestFlush = std::chrono::seconds(2);
 constexpr std::size_t kPacketEvents = 16'384, kDepth = 1000;
 constexpr const char* kClock = "/clock";
-// By external sensor.
-constexpr std::array<std::string_view, kExternalSensors> kExternalTypes = {"sensor_msgs/FluidPressure",
-                                                                           "geometry_msgs/TwistWithCovarianceStamped"};
 
 bool whole_microseconds(std::span<const Event> events) {
   return std::ranges::all_of(events, [](const Event& event) { return to_ns(event.t) % 1000 == 0; });
@@ -56,7 +52,7 @@ Player::Player(const PlaySetup& setup, WriterSetup recording)
   add_cameras(Modality::Frames, info.has_frames, "sensor_msgs/Image");
   if (info.has_imu) add_topic("imu", "sensor_msgs/Imu");
   for (std::size_t i = 0; i < external_sensors().size(); ++i)
-    add_topic(std::string(external_sensors()[i].name), kExternalTypes[i]);
+    add_topic(std::string(external_sensors()[i].name), external_type(i));
   add_topic(kClock, "rosgraph_msgs/Clock");
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/core/measurements/external_sensor.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::node {
@@ -34,8 +35,9 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
     outputs_.add_camera(camera.name, first ? (events ? "events" : "frames") : camera.name);
     inputs_.subscribe(first ? topic : camera.name + "/" + topic, events ? Role::Events : Role::Frames, camera.name);
   }
-  for (const Role role : {Role::Imu, Role::Height, Role::Velocity})
-    inputs_.subscribe(kRoleNames[static_cast<std::size_t>(role)], role, "");
+  inputs_.subscribe("imu", Role::Imu, "");
+  for (std::size_t i = 0; i < kExternalSensors; ++i)
+    inputs_.subscribe(std::string(external_sensors()[i].name), external_role(i), "");
   outputs_.publish_cameras(transport.now(), used);
   load_map(config);
 }

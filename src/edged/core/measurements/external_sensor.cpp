@@ -20,6 +20,7 @@ const std::array<ExternalSensor, kExternalSensors>& table() {
        .what = "Height above a level that may drift (barometer, range finder)",
        .columns = {"height"},
        .unit = "m",
+       .other_units = {{"cm", 0.01}, {"mm", 0.001}, {"km", 1000.0}, {"ft", 0.3048}, {"feet", 0.3048}},
        .largest = 2e4,
        .sample = [](Timestamp t, const ExternalNumbers& n) -> ExternalSample {
          return HeightSample{t, n.values[0], n.sigmas[0]};
@@ -32,6 +33,7 @@ const std::array<ExternalSensor, kExternalSensors>& table() {
        .what = "Velocity of a sensor on the body in its own axes (wheel odometry, optical flow, DVL)",
        .columns = {"vx", "vy", "vz"},
        .unit = "m/s",
+       .other_units = {{"cm/s", 0.01}, {"mm/s", 0.001}, {"ft/s", 0.3048}, {"km/h", 1.0 / 3.6}, {"kn", 1852.0 / 3600.0}},
        .largest = 200.0,
        .sample = [](Timestamp t, const ExternalNumbers& n) -> ExternalSample {
          return VelocitySample{t, vector(n.values), vector(n.sigmas)};

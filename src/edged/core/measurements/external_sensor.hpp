@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct ExternalSensor {
   std::string_view what;                  ///< what it may be, for help texts
   std::vector<std::string_view> columns;  ///< what it measures
   std::string_view unit;                  ///< unit of all columns: "m" or "m/s"
-  double largest = 0.0;                   ///< largest absolute value that is accepted
+  std::vector<std::pair<std::string_view, double>> other_units;  ///< in the headings of files, each in `unit`
+  double largest = 0.0;                                          ///< largest absolute value that is accepted
   ExternalSample (*sample)(Timestamp t, const ExternalNumbers& numbers) = nullptr;
   ExternalNumbers (*numbers)(const ExternalSample& sample) = nullptr;
 };

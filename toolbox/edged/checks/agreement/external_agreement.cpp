@@ -283,11 +283,11 @@ std::optional<VelocityAgreement> compare_velocities(const std::vector<VelocitySa
 }
 
 void ExternalCheck::add(const ExternalSample& sample) {
-  if (const auto* height = std::get_if<HeightSample>(&sample)) {
-    if (heights_.size() < kMostSamples) heights_.push_back(*height);
-  } else if (velocities_.size() < kMostSamples) {
-    velocities_.push_back(std::get<VelocitySample>(sample));
-  }
+  const auto keep = [&sample]<typename T>(std::vector<T>& kept) {
+    if (const T* one = std::get_if<T>(&sample); one && kept.size() < kMostSamples) kept.push_back(*one);
+  };
+  keep(heights_);
+  keep(velocities_);
 }
 
 void ExternalCheck::judge(const GyroIntegral& gyro, const ExternalStatisticsByName& statistics,

@@ -27,6 +27,11 @@ enum class Role { Events, Frames, Imu, Truth, Height, Velocity };
 inline constexpr std::array<const char*, 6> kRoleNames = {"events", "frames", "imu", "truth", "height", "velocity"};
 static_assert(kRoleNames.size() == 4 + kExternalSensors, "a role for each");
 
+/// The role of a sensor of external_sensors() by its place there.
+constexpr Role external_role(std::size_t place) {
+  return static_cast<Role>(static_cast<std::size_t>(Role::Height) + place);
+}
+
 /// The external sensor of a role; null for the other roles.
 const ExternalSensor* external_sensor_of(Role role);
 

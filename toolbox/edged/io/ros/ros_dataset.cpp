@@ -232,8 +232,7 @@ class RosDataset final : public StreamedDataset {
           break;
         case Role::Truth:
           break;  // read in a separate pass
-        case Role::Height:
-        case Role::Velocity:
+        default:  // an external sensor
           push_external(read_external(type, reader));
           break;
       }

@@ -73,15 +73,11 @@ struct ExternalTable {
   bool sigmas_follow = false;            ///< all numbers after the values are sigmas
 };
 
-/// The factor to the unit of the sensor. Nothing for an unknown unit.
-std::optional<double> external_scale(std::string_view unit, std::string_view wanted) {
-  static const std::map<std::string_view, double> lengths = {{"m", 1.0},     {"cm", 0.01},   {"mm", 0.001},
-                                                             {"km", 1000.0}, {"ft", 0.3048}, {"feet", 0.3048}};
-  static const std::map<std::string_view, double> speeds = {
-      {"m/s", 1.0}, {"cm/s", 0.01}, {"mm/s", 0.001}, {"ft/s", 0.3048}, {"km/h", 1.0 / 3.6}, {"kn", 1852.0 / 3600.0}};
-  const auto& known = wanted == "m" ? lengths : speeds;
-  const auto found = known.find(unit);
-  return found == known.end() ? std::nullopt : std::optional(found->second);
+/// The factor to the unit of the sensor, 1 for no unit. Nothing for an unknown one.
+std::optional<double> external_scale(std::string_view unit, const ExternalSensor& sensor) {
+  if (unit.empty() || unit == sensor.unit) return 1.0;
+  const auto found = std::ranges::find(sensor.other_units, unit, &std::pair<std::string_view, double>::first);
+  return found == sensor.other_units.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// The unit of stamps without a named one: seconds, since 1970 or since the start, have at most ten digits.
@@ -135,7 +131,7 @@ std::optional<ExternalTable> table_by_heading(const HeadingLine& heading, const 
     if (!value && heading.comment) return std::nullopt;
     if (!value) throw refuse("has no column " + name);
     const std::string& said = places[*value].unit;
-    const auto scale = said.empty() ? 1.0 : external_scale(said, sensor.unit);
+    const auto scale = external_scale(said, sensor);
     if (!scale) throw refuse(fmt::format("has {} in {}, which is not known", column, said));
     table.columns.at.push_back(*value);
     table.columns.scales.push_back(*scale);

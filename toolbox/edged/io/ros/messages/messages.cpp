@@ -285,6 +285,12 @@ AirPressure pressure_of_height(const HeightSample& height) {
   return {pressure_pa, sigma_pa * sigma_pa};
 }
 
+std::string_view external_type(std::size_t place) {
+  constexpr std::array<std::string_view, kExternalSensors> kTypes = {"sensor_msgs/FluidPressure",
+                                                                     "geometry_msgs/TwistWithCovarianceStamped"};
+  return kTypes.at(place);
+}
+
 std::string external_message(Wire wire, const ExternalSample& sample) {
   WireWriter out(wire);
   if (const auto* height = std::get_if<HeightSample>(&sample)) {

@@ -64,8 +64,10 @@ std::string image_message(Wire wire, const Frame& frame);
 /// An external sample by the type of the message: FluidPressure (by the standard atmosphere), Range (downwards) or any
 /// twist.
 ExternalSample read_external(std::string_view type, WireReader message);
-/// The message that read_external() reads back: sensor_msgs/FluidPressure for a height,
-/// geometry_msgs/TwistWithCovarianceStamped for a velocity.
+/// The type of the messages that are written for a sensor of external_sensors(): sensor_msgs/FluidPressure for a
+/// height, geometry_msgs/TwistWithCovarianceStamped for a velocity.
+std::string_view external_type(std::size_t place);
+/// The message of that type, which read_external() reads back.
 std::string external_message(Wire wire, const ExternalSample& sample);
 
 /// The reverse of the standard atmosphere. variance_pa2: 0 where the height has no sigma.
