@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/command.hpp"
+#include "common/config_source.hpp"
 #include "common/interrupt.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
@@ -38,7 +39,7 @@ SimulatorConfig load_config(const SimulateOptions& options) {
   ConfigFields fields = ConfigFields::of(config);
   if (options.seed) fields.set("seed", *options.seed);
   if (options.duration_s) fields.set("duration_s", *options.duration_s);
-  for (const std::string& assignment : options.assignments) fields.set(assignment);
+  assign(config, options.assignments);
   return config;
 }
 
@@ -103,8 +104,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
                    "Distance of a second event camera and a second frame camera, events2 and frames2, to the right of "
                    "the first [m] [no second cameras]")
       ->check(positive_number());
-  simulate->add_option("--set", options->assignments, "One option as key=value; may be repeated")
-      ->allow_extra_args(false);
+  add_assignments(*simulate, "--set", "One option", options->assignments);
   simulate->add_flag("--list", options->list, "Print every option as chosen, with unit and effect, instead");
   simulate->add_option("--out", options->out, "Folder to make [recordings/PRESET_SEED]");
   finish_command(*simulate, options, "", chosen, run_simulate);

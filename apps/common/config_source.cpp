@@ -12,16 +12,20 @@ void RunConfig::visit(ConfigFields& fields) {
   fields.group("autopilot", autopilot);
 }
 
+void add_assignments(CLI::App& command, const std::string& flag, const std::string& what,
+                     std::vector<std::string>& assignments) {
+  command.add_option(flag, assignments, what + " as key=value; may be repeated")->allow_extra_args(false);
+}
+
 void add_config_options(CLI::App& command, ConfigSource& source) {
   command.add_option("--config", source.file, "Options file (YAML); `edged config --yaml` prints one");
-  command.add_option("--set", source.assignments, "One option as key=value; may be repeated")->allow_extra_args(false);
+  add_assignments(command, "--set", "One option", source.assignments);
 }
 
 RunConfig load_config(const ConfigSource& source) {
   RunConfig config;
-  ConfigFields fields = ConfigFields::of(config);
-  if (!source.file.empty()) fields.load(source.file);
-  for (const std::string& assignment : source.assignments) fields.set(assignment);
+  if (!source.file.empty()) ConfigFields::of(config).load(source.file);
+  assign(config, source.assignments);
   return config;
 }
 

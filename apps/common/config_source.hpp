@@ -9,6 +9,7 @@
 
 #include "common/cli.hpp"
 #include "edged/autopilot/autopilot_config.hpp"
+#include "edged/config.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/options.hpp"
 
@@ -26,6 +27,17 @@ struct ConfigSource {
   std::filesystem::path file;
   std::vector<std::string> assignments;  ///< "key=value"
 };
+
+/// Adds a flag for assignments that may be repeated. what: "One option".
+void add_assignments(CLI::App& command, const std::string& flag, const std::string& what,
+                     std::vector<std::string>& assignments);
+
+/// Throws InputError that names the key.
+template <typename Config>
+void assign(Config& config, const std::vector<std::string>& assignments) {
+  ConfigFields fields = ConfigFields::of(config);
+  for (const std::string& assignment : assignments) fields.set(assignment);
+}
 
 /// Adds --config and --set.
 void add_config_options(CLI::App& command, ConfigSource& source);

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "common/config_source.hpp"
 #include "common/interrupt.hpp"
 #include "common/status_line.hpp"
 #include "common/text.hpp"
@@ -108,14 +109,8 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
   if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
   const std::vector<std::string> parts = split(options.recording.substr(kSimulatorPrefix.size()), ":");
   SimulatorConfig config = simulator_preset(parts.front());
-  ConfigFields fields = ConfigFields::of(config);
-  for (const std::string& part : std::span(parts).subspan(1)) {
-    if (part.find('=') == std::string::npos) {
-      fields.set("seed", part);
-    } else {
-      for (const std::string& assignment : split(part, ",")) fields.set(assignment);
-    }
-  }
+  for (const std::string& part : std::span(parts).subspan(1))
+    assign(config, part.find('=') == std::string::npos ? std::vector{"seed=" + part} : split(part, ","));
   return config;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/config_source.hpp"
 #include "dense_flight.hpp"
-#include "edged/config.hpp"
 #include "edged/options.hpp"
 #include "edged/sim/simulated_pair.hpp"
 #include "program/commands.hpp"
@@ -36,8 +36,7 @@ int run(const DenseOptions& options) {
   SimulatorConfig config = simulator_preset(options.preset);
   config.seed = options.seed;
   config.duration_s = options.duration_s;
-  ConfigFields fields = ConfigFields::of(config);
-  for (const std::string& assignment : options.simulator) fields.set(assignment);
+  assign(config, options.simulator);
   const Flight flight = fly(config, options.baseline_m);
   OdometryConfig odometry;
   if (options.baseline_m > 0.0) odometry.cameras = "events,events2,frames,frames2";
@@ -59,8 +58,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "Another flight")->capture_default_str();
   app.add_option("--duration", options.duration_s, "[s]")->capture_default_str();
   app.add_option("--baseline", options.baseline_m, "Of second cameras [m]; 0: none")->capture_default_str();
-  app.add_option("--set", options.simulator, "One option of the simulator as key=value; may be repeated")
-      ->allow_extra_args(false);
+  add_assignments(app, "--set", "One option of the simulator", options.simulator);
   app.add_option("--modes", options.modes, "Sensors beside the IMU")
       ->delimiter(',')
       ->check(CLI::IsMember({"events", "frames", "fused"}));

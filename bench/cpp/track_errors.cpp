@@ -125,8 +125,7 @@ int run(const ErrorOptions& options) {
     if (options.source.dim_frames || options.source.piece.from_s > 0.0)
       throw InputError("--dim-frames, --from: not for simulations; set --sim frames.electrons_per_ms=... instead");
     if (options.source.piece.to_s) simulated->duration_s = *options.source.piece.to_s;
-    ConfigFields fields = ConfigFields::of(*simulated);
-    for (const std::string& assignment : options.simulator) fields.set(assignment);
+    assign(*simulated, options.simulator);
     truth = simulated_truth(*simulated);
     auto simulator = std::make_unique<Simulator>(*simulated);
     source.calibration = simulator->calibration();
@@ -156,8 +155,7 @@ int main(int argc, char** argv) {
   ErrorOptions options;
   add_source_options(app, options.source);
   add_config_options(app, options.config);
-  app.add_option("--sim", options.simulator, "One option of the simulator as key=value; may be repeated")
-      ->allow_extra_args(false);
+  add_assignments(app, "--sim", "One option of the simulator", options.simulator);
   app.add_option("--mode", options.mode, "Sensors beside the IMU; auto: all there are")
       ->check(CLI::IsMember({"auto", "events", "frames", "fused"}));
   app.add_option("--out", options.out, "Table to write (csv)")->required();

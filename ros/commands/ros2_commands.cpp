@@ -216,15 +216,14 @@ void add_play_command(CLI::App& app, std::function<int()>& chosen) {
   play->add_flag("--best-effort", options->best_effort, "Offer best effort, as drivers do; lost messages stay lost");
   play->add_flag("--wait", options->wait, "Begin when the first subscriber has come");
   play->add_flag("--loop", options->loop, "Again and again; the clock jumps back");
-  play->add_flag("--quiet", options->quiet, "No status line");
-  play->footer(
+  const std::string footer =
       "Topics: events (EventPacket), image, imu, height (FluidPressure), velocity (TwistWithCovarianceStamped), "
       "/clock;\n"
       "of a further camera NAME: NAME/events, NAME/image. Stamps are those of the recording.\n"
       "Examples:\n"
       "  edged play flight.bag --ros2 --wait\n"
-      "  edged play flight.aedat4 --ros2 --rate 2 -r events:=/event_camera/events");
-  play->callback([options, &chosen] { chosen = [options] { return run_play(*options); }; });
+      "  edged play flight.aedat4 --ros2 --rate 2 -r events:=/event_camera/events";
+  finish_command(*play, options, footer, chosen, run_play);
 }
 
 }  // namespace edged

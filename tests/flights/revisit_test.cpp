@@ -164,7 +164,7 @@ std::filesystem::path write_motion_through_twins() {
 }
 
 /// Points that were found and are of keyframes taken more than 2 m away, by the truth.
-std::size_t found_elsewhere(const Flight& flight, const FlightRun& run) {
+std::size_t wrong_relocalizations(const Flight& flight, const FlightRun& run) {
   const Trajectory& truth = flight.truth->trajectory;
   const auto true_place = [&](Timestamp t) {
     return std::ranges::lower_bound(truth, t, {}, &StampedPose::t)->T.translation();
@@ -191,7 +191,7 @@ TEST(Revisits, DoNotTakeOneOfTwoEqualRoomsForTheOther) {
       const auto found = std::ranges::count_if(run.steps, [](const Step& step) { return !step.map_matches.empty(); });
       std::cout << mode_name(mode) << (covered ? ", lens covered on the way" : "") << ": found in " << found << " of "
                 << run.steps.size() << " packets, ATE " << 1e3 * score(flight, run).evaluation.ate_m.rmse << " mm\n";
-      EXPECT_EQ(found_elsewhere(flight, run), 0U);
+      EXPECT_EQ(wrong_relocalizations(flight, run), 0U);
       EXPECT_GT(found, 10);
     }
   }

@@ -20,6 +20,17 @@ def edged(*args, cwd=None):
     return subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, cwd=cwd, check=False, timeout=300)
 
 
+def output_of(*args, codes=(0,)):
+    """What it prints, if it ends with one of these exit codes."""
+    done = edged(*args)
+    assert done.returncode in codes, done.stderr
+    return done.stdout
+
+
+def ate_m(truth, trajectory):
+    return json.loads(output_of("eval", truth, trajectory, "--json"))["ate_rmse_m"]
+
+
 class WithFolder(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="edged_cli_"))

@@ -11,22 +11,20 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
-EDGED, PEER = os.environ["EDGED"], os.environ["EDGED_ROS2_PEER"]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tests/program"))
+from program import EDGED, ate_m, output_of  # noqa: E402
+
+PEER = os.environ["EDGED_ROS2_PEER"]
 SECONDS = 4
 
 
 def edged(*args):
-    done = subprocess.run([EDGED, *map(str, args)], capture_output=True, text=True, check=False)
-    assert done.returncode in (0, 5), done.stderr
-    return done.stdout
-
-
-def ate_m(truth, trajectory):
-    return json.loads(edged("eval", truth, trajectory, "--json"))["ate_rmse_m"]
+    return output_of(*args, codes=(0, 5))
 
 
 def poses(file):

@@ -19,6 +19,9 @@ import xmlrpc.client
 
 import rosbag
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tests/program"))
+from program import ate_m, output_of  # noqa: E402
+
 NAME = "mirror_poster"
 RIG = "davis240c_ecd"
 INPUTS = {"/dvs/events": 0, "/camera/image_raw": 0, "/imu/data": 0}
@@ -35,16 +38,6 @@ def free_port():
     with socket.socket() as s:
         s.bind(("localhost", 0))
         return s.getsockname()[1]
-
-
-def edged(*args):
-    done = subprocess.run([os.environ["EDGED"], *map(str, args)], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def ate_m(truth, trajectory):
-    return json.loads(edged("eval", truth, trajectory, "--json"))["ate_rmse_m"]
 
 
 def wait_for(what, condition, timeout_s=60):
@@ -126,11 +119,11 @@ class PlayedMirror(unittest.TestCase):
             archive.extractall(cls.folder)
         recording, bag = cls.folder / NAME, cls.folder / "in.bag"
         cls.truth = recording / "groundtruth_body.txt"
-        converted = edged("convert", recording, bag)
+        converted = output_of("convert", recording, bag)
         cls.events = int(converted.split(" events")[0].split()[-1])
         with rosbag.Bag(bag) as b:
             cls.sent = {topic: b.get_message_count(topic) for topic in INPUTS}
-        edged("run", bag, "--rig", RIG, "--frame", "body", "--quiet", "--out", cls.folder / "offline")
+        output_of("run", bag, "--rig", RIG, "--frame", "body", "--quiet", "--out", cls.folder / "offline")
         cls.session = Session(cls.folder)
         cls.addClassCleanup(cls.session.end)
         cls.session.play(bag)

@@ -54,7 +54,7 @@ class JumpGate {
   /// and later items near t are not far ahead.
   template <typename Pass>
   void confirm(Timestamp t, Pass pass) {
-    heard_ = std::max(heard_, t);
+    newest_of_others_ = std::max(newest_of_others_, t);
     if (waiting_ && std::chrono::abs(time_of(*waiting_) - t) <= kJump) finish(pass);
   }
 
@@ -69,7 +69,9 @@ class JumpGate {
   std::optional<Timestamp> newest() const { return newest_; }
 
  private:
-  bool is_far_ahead(Timestamp t) const { return newest_ ? t - std::max(*newest_, heard_) > kJump : first_waits_; }
+  bool is_far_ahead(Timestamp t) const {
+    return newest_ ? t - std::max(*newest_, newest_of_others_) > kJump : first_waits_;
+  }
   template <typename Pass>
   void let_through(T item, Pass& pass) {
     const Timestamp t = time_of(item);
@@ -80,7 +82,7 @@ class JumpGate {
   bool first_waits_;
   std::optional<T> waiting_;
   std::optional<Timestamp> newest_;
-  Timestamp heard_ = Timestamp::min();
+  Timestamp newest_of_others_ = Timestamp::min();
 };
 
 }  // namespace edged

@@ -160,7 +160,7 @@ Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions
   for (const auto& choice : options.sees)
     if (std::ranges::find(file.lenses, choice.first, &Lens::name) == file.lenses.end())
       throw InputError::format("{}: has no camera {}; it has: {}", path.string(), choice.first,
-                               fmt::join(names_of(file.lenses), ", "));
+                               fmt::join(texts_of(file.lenses, &Lens::name), ", "));
   Calibration out;
   out.rig.name = file.name.empty() ? std::filesystem::path(path.name()).stem().string() : file.name;
   out.has_extrinsics = file.has_extrinsics;

@@ -94,7 +94,7 @@ std::string usual_camera_name(Modality modality, std::size_t index) {
 }
 
 std::string recorded_camera_names(const DatasetInfo& info) {
-  return fmt::format("{}", fmt::join(names_of(recorded_cameras(info)), ", "));
+  return fmt::format("{}", fmt::join(texts_of(recorded_cameras(info), &RecordedCamera::name), ", "));
 }
 
 std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera>& all, std::string_view name) {

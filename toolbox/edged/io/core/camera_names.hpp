@@ -34,14 +34,6 @@ std::optional<std::string> camera_by_usual_name(const std::vector<RecordedCamera
 /// "left, right": the cameras of a recording, for messages.
 std::string recorded_camera_names(const DatasetInfo& info);
 
-/// The names of cameras of any description.
-template <typename Cameras>
-std::vector<std::string> names_of(const Cameras& cameras) {
-  std::vector<std::string> names;
-  for (const auto& camera : cameras) names.push_back(camera.name);
-  return names;
-}
-
 /// "events" or "frames".
 std::string kind_name(Modality modality);
 

@@ -15,7 +15,7 @@ namespace edged {
 namespace {
 
 /// "events or IMU samples"
-std::string names_of(const Merger::Streams& streams) {
+std::string list_of(const Merger::Streams& streams) {
   std::string names;
   const auto add = [&names](bool there, const char* name) {
     if (there) names += (names.empty() ? "" : " or ") + std::string(name);
@@ -59,7 +59,7 @@ void StreamedDataset::begin(const std::vector<RecordedCamera>& cameras, bool imu
   image_sizes_.resize(std::max<std::size_t>(expected.frames.size(), 1));
   merger_.expect(expected);
   first_ = merged();
-  if (!first_) throw InputError::format("{}: nothing to read: holds no {}", name_, names_of(expected));
+  if (!first_) throw InputError::format("{}: nothing to read: holds no {}", name_, list_of(expected));
   info_.begin = first_stamp(*first_);
 }
 

@@ -103,7 +103,7 @@ void check_names(const TopicWishes& wishes) {
     const bool camera = is_camera(name, Modality::Events, wishes.rig) || is_camera(name, Modality::Frames, wishes.rig);
     if (camera || std::ranges::find(kRoleNames, name) != kRoleNames.end()) continue;
     std::vector<std::string> cameras = {"events2", "frames2"};
-    if (wishes.rig && !wishes.rig->cameras.empty()) cameras = names_of(wishes.rig->cameras);
+    if (wishes.rig && !wishes.rig->cameras.empty()) cameras = texts_of(wishes.rig->cameras, &RigCamera::name);
     throw InputError::format("--topic {}={}: the role must be one of {}, or the name of a camera: {}", name, topic,
                              fmt::join(kRoleNames, ", "), fmt::join(cameras, ", "));
   }
@@ -158,7 +158,8 @@ class CameraChooser {
   /// The chosen cameras that are read.
   std::vector<CameraTopic> to_read() const {
     std::vector<CameraTopic> read;
-    for (const std::size_t i : cameras_to_read(names_of(chosen_), wishes_.cameras, wishes_.all_cameras))
+    for (const std::size_t i :
+         cameras_to_read(texts_of(chosen_, &CameraTopic::name), wishes_.cameras, wishes_.all_cameras))
       read.push_back(chosen_[i]);
     return read;
   }
