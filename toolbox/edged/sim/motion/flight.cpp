@@ -132,6 +132,10 @@ Path free_loops() {
           [=](double u) { return 70.0 * kDegree * std::sin(0.5 * clock(u)); }};
 }
 
+Path hover() {
+  return {22.0, [](double) { return Eigen::Vector3d(0.0, 0.0, kHeight_m); }, [](double) { return 0.0; }};
+}
+
 Path path_of(Manoeuvre manoeuvre) {
   switch (manoeuvre) {
     case Manoeuvre::Circle:
@@ -146,6 +150,8 @@ Path path_of(Manoeuvre manoeuvre) {
       return turned();
     case Manoeuvre::Free:
       return free_loops();
+    case Manoeuvre::Hover:
+      return hover();
     case Manoeuvre::None:
       break;
   }
@@ -186,7 +192,7 @@ class Wobble {
 /// The whole flight as functions of the time since take-off.
 class Drone {
  public:
-  Drone(Manoeuvre manoeuvre, std::uint64_t seed) : Drone(manoeuvre, Random(seed, 7)) {}
+  Drone(Manoeuvre manoeuvre, std::uint64_t seed, double wind) : Drone(manoeuvre, Random(seed, 7), wind) {}
 
   double end_s() const { return airborne_s(path_) + kStill_s; }
 
@@ -202,13 +208,16 @@ class Drone {
     R.col(2) = z;
     R.col(1) = z.cross(forward).normalized();
     R.col(0) = R.col(1).cross(z);
-    const Eigen::Vector3d shake = 1.2 * kDegree * aloft(t) * attitude_wobble_(t);
+    const Eigen::Vector3d shake = 1.2 * kDegree * wind_ * aloft(t) * attitude_wobble_(t);
     return {Eigen::Quaterniond(R) * so3::exp(shake), p};
   }
 
  private:
-  Drone(Manoeuvre manoeuvre, Random random)
-      : path_(path_of(manoeuvre)), position_wobble_(0.35, 0.9, random), attitude_wobble_(0.9, 3.1, random) {}
+  Drone(Manoeuvre manoeuvre, Random random, double wind)
+      : path_(path_of(manoeuvre)),
+        wind_(wind),
+        position_wobble_(0.35, 0.9, random),
+        attitude_wobble_(0.9, 3.1, random) {}
 
   double manoeuvre_time(double t) const { return std::clamp(t - kTakeOff_s - kHover_s, 0.0, path_.duration_s); }
 
@@ -218,18 +227,19 @@ class Drone {
   Eigen::Vector3d position(double t) const {
     Eigen::Vector3d p = path_.position(manoeuvre_time(t));
     p.z() = kGround_m + aloft(t) * (p.z() - kGround_m);
-    return p + 0.025 * aloft(t) * position_wobble_(t);
+    return p + 0.025 * wind_ * aloft(t) * position_wobble_(t);
   }
 
   Path path_;
+  double wind_;
   Wobble position_wobble_, attitude_wobble_;
 };
 
 }  // namespace
 
-Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed) {
+Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed, double wind) {
   constexpr double kRate = 100.0;
-  const Drone drone(manoeuvre, seed);
+  const Drone drone(manoeuvre, seed, wind);
   Trajectory poses;
   for (int i = 0; i <= static_cast<int>(std::ceil(drone.end_s() * kRate)); ++i)
     poses.push_back({timestamp_from_seconds(i / kRate), drone.pose(i / kRate)});

@@ -12,7 +12,7 @@ namespace edged {
 
 /// T_W_B at 100 Hz from the instant of take-off until 1 s after the landing; at rest at both ends, 0.25 m above the
 /// floor, within 2.3 m of the vertical axis through the origin of a hall. B: x forward, y left, z up. The seed
-/// determines the wobble of the drone. manoeuvre: not None.
-Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed);
+/// determines the wobble of the drone, the wind its size: 1 for that of its controller alone. manoeuvre: not None.
+Trajectory fly(Manoeuvre manoeuvre, std::uint64_t seed, double wind = 1.0);
 
 }  // namespace edged

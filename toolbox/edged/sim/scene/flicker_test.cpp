@@ -10,6 +10,7 @@
 #include <numeric>
 #include <opencv2/core.hpp>
 
+#include "edged/core/check.hpp"
 #include "edged/sim/simulator.hpp"
 #include "edged/sim/test_recording.hpp"
 

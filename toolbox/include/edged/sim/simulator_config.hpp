@@ -18,8 +18,12 @@ namespace edged {
 
 /// Circle: three laps of 1.6 m radius, heading along them. Aggressive: fast shifts to the sides with the roll that they
 /// take. Square: two laps of four legs with a stop and a quarter turn at each corner. Line: to and fro along x. Turned:
-/// slow path, fast changes of yaw. Free: loops with swaying yaw.
-enum class Manoeuvre { None, Circle, Aggressive, Square, Line, Turned, Free };
+/// slow path, fast changes of yaw. Free: loops with swaying yaw. Hover: at one place.
+enum class Manoeuvre { None, Circle, Aggressive, Square, Line, Turned, Free, Hover };
+
+/// Where random motion goes. Free: to all sides. Approach: ahead and back. Altitude: up and down. Pan: the camera turns
+/// on a tripod about a point beside it.
+enum class MotionStyle { Free, Approach, Altitude, Pan };
 
 enum class PoseOf { Camera, Body };
 
@@ -35,6 +39,12 @@ struct MotionConfig {
   double max_angle_deg = 35.0;
   double max_speed = 0.8;
   double max_rate_deg_s = 45.0;
+  MotionStyle style = MotionStyle::Free;
+  double lever_m = 0.0;    ///< of a pan: the camera is so far ahead of the axes
+  double go_s = 2.0;       ///< of motion between pauses
+  double pause_s = 0.0;    ///< 0: no pauses
+  double tremor_mm = 0.0;  ///< of a hand
+  double wind = 1.0;       ///< of a flight
   /// Random motion around a target at (0, 0, 1.3) that faces -x, at this mean distance; 0: none [m].
   double target_m = 0.0;
   double aim_deg = 20.0;
