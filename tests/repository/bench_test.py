@@ -45,7 +45,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "speed", "starts",
+        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "space", "speed", "starts",
                      "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
@@ -59,6 +59,61 @@ class Bench(unittest.TestCase):
         self.assertEqual(len(runs), 1)
         self.assertEqual(bench(*args).stdout, first.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.folder.rglob("metrics.json")}, runs)
+
+    def test_space_draws_the_same_again_and_another_range_changes_no_other_value(self):
+        space = script("space")
+        first = space.values_of(1, 7)
+        self.assertEqual(space.values_of(1, 7), first)
+        self.assertNotEqual(space.values_of(2, 7), first)
+        with unittest.mock.patch.dict(space.RANGES, light=space.even(2.0, 3.0)):
+            other = space.values_of(1, 7)
+        self.assertTrue(2.0 < other.pop("light") < 3.0)
+        self.assertEqual(other, {name: value for name, value in first.items() if name != "light"})
+
+    def test_space_calls_silent_what_is_good_and_beyond_three_sigma_for_half_a_second(self):
+        space = script("space")
+        # East in the truth is north in the estimate, which moves at twice the speed.
+        turn = [0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)]
+        truth = types.SimpleNamespace(at=lambda t: ([t, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]))
+        covariance = {f"{of}_{axes}_{unit}": (1e-4 if axes[0] == axes[1] else 0.0) if of == "p" else 0.0
+                      for of, unit in (("p", "m2"), ("r", "rad2")) for axes in ("xx", "xy", "xz", "yy", "yz", "zz")}
+
+        def silent(speed, statuses=("Good",) * 200, sigma_m=0.01):
+            rows = [{**covariance, "t_ns": 1e7 * i, "status": status, "relocalized": 0.0, "px_m": 0.0, "py_m": 0.01 * i * speed, "pz_m": 0.0,
+                     **dict(zip(("qx", "qy", "qz", "qw"), turn)), "p_zz_m2": sigma_m ** 2 * (1.0 + 1e-3 * i), "p_yy_m2": sigma_m ** 2}
+                    for i, status in enumerate(statuses)]
+            return space.silent_s(rows, truth)
+
+        self.assertEqual(silent(1.0), 0.0)
+        # Beyond 3 sqrt(2) cm from 0.05 s on.
+        self.assertAlmostEqual(silent(2.0), 1.94, delta=0.011)
+        self.assertAlmostEqual(silent(2.0, sigma_m=0.1), 1.57, delta=0.011)
+        self.assertEqual(silent(2.0, ("Good",) * 50 + ("Lost",) + ("Good",) * 50), 0.0)
+        self.assertEqual(silent(2.0, ("Good", *("Degraded",) * 150)), 0.0)
+
+    def test_space_shrinks_a_draw_to_the_options_with_which_it_fails_in_the_same_way(self):
+        space = script("space")
+        draw = space.Draw(types.SimpleNamespace(seed=1, duration=12.0), 7)
+
+        def fly(_, folder, groups, modes, step):
+            if "camera" in groups and "scene" not in groups:
+                raise harness.ProgramError("these do not go together")
+            return {mode: {"classes": ["lost"] if {"rest", "light"} <= set(groups) else ["late"]} for mode in modes}, 1.0
+
+        with unittest.mock.patch.object(space, "fly", fly):
+            self.assertEqual(space.shrunk(draw, self.folder, "fused", ["lost", "silent"], lambda what: None), ["rest", "light"])
+
+    def test_space_prints_a_line_a_mode_and_keeps_what_it_has_drawn(self):
+        args = ["space", "--draw", 5, "--duration", 2, "--modes", "frames", "--calibration", "hasty", "--json", self.folder / "draws.jsonl"]
+        first = bench(*args)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertRegex(first.stdout, r"draw 5, [\w -]+: edged simulate --preset \w+ --seed \d+ --duration 2 ")
+        self.assertRegex(first.stdout, r"  frames: .*; edged run \S+ --mode frames --calib \S+-hasty.yaml\n")
+        self.assertRegex(first.stdout, r"\| any of these +\| \d of 1, ")
+        drawn = (self.folder / "draws.jsonl").read_text()
+        self.assertEqual(drawn.count("\n"), 1)
+        self.assertEqual(bench(*args).stdout, first.stdout)
+        self.assertEqual((self.folder / "draws.jsonl").read_text(), drawn)
 
     def test_external_compares_sensors_and_faults_and_keeps_what_it_has_run(self):
         args = ["external", "--cache", self.folder, "--scenes", "hover", "--variants", "none", "both", "outliers", "--seeds", 1,
