@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "edged/core/check.hpp"
+#include "edged/imu/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -12,16 +13,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-/// Constants that were chosen (docs/decisions/estimator/022-imu-damage.md).
-struct ImuTuning {
-  double jump_share = 0.3;                               ///< share of a jump beyond the usual that is uncertain
-  double usual_gyro_jump = 1.0, usual_accel_jump = 4.0;  ///< [rad/s], [m/s^2] between two samples of a body in flight
-  /// Process noise in a gap, where the motion is assumed to continue: rates of 1.5 rad/s and accelerations of 5 m/s^2
-  /// that last for 0.1 s, as densities [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)].
-  double gap_gyro_noise = 0.7, gap_accel_noise = 2.2;
-};
-constexpr ImuTuning kImuTuning{};
 
 ImuSample interpolate_samples(const ImuSample& a, const ImuSample& b, Timestamp t) {
   const double span = to_seconds(b.t - a.t);
@@ -169,6 +160,8 @@ Preintegration Preintegration::reintegrated(const Vector3d& bias_gyro, const Vec
 Preintegration Preintegration::joined(const Preintegration& next) const {
   EDGED_CHECK(end() == next.begin(), "first ends at {}, second begins at {} ns", to_ns(end()), to_ns(next.begin()));
   Preintegration both = *this;
+  both.noise_.gyro_noise = std::max(noise_.gyro_noise, next.noise_.gyro_noise);
+  both.noise_.accel_noise = std::max(noise_.accel_noise, next.noise_.accel_noise);
   both.samples_.reserve(samples_.size() + next.samples_.size() - 1);
   for (std::size_t i = 1; i < next.samples_.size(); ++i) {
     both.integrate_step(next.samples_[i - 1], next.samples_[i]);

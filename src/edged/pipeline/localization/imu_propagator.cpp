@@ -17,9 +17,10 @@ void ImuPropagator::bridge(std::vector<ImuSample>& imu) const {
 }
 
 Preintegration ImuPropagator::predict(std::vector<ImuSample> imu, bool started) {
+  const ImuNoise& noise = noise_.add(imu);
   const bool bridged = started && std::ranges::all_of(imu, &ImuSample::interpolated);
   if (bridged) bridge(imu);
-  Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise_);
+  Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise);
   const Timestamp t = motion.end();
   gyro_was_saturated_ = gyro_saturated_ && !motion.gyro_clipped();
   gyro_saturated_ = motion.gyro_clipped();

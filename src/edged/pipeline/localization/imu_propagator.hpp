@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "edged/core/odom_state.hpp"
+#include "edged/imu/noise_estimator.hpp"
 #include "edged/imu/preintegration.hpp"
 #include "edged/imu_noise.hpp"
 #include "edged/measurement.hpp"
@@ -38,7 +39,7 @@ class ImuPropagator {
  private:
   void bridge(std::vector<ImuSample>& imu) const;
 
-  ImuNoise noise_;
+  ImuNoiseEstimator noise_;
   Duration history_;
   OdomState now_;
   bool started_ = false;

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/imu/noise_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace edged {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr ImuNoise kCalibrated{.gyro_noise = 2e-4, .accel_noise = 5e-3};
+constexpr double kPacket_s = 0.05;
+
+/// An IMU that follows a motion with white noise of given densities, and vibration.
+struct Imu {
+  double rate_hz = 500.0;
+  double gyro_noise = kCalibrated.gyro_noise, accel_noise = kCalibrated.accel_noise;
+  std::function<Vector3d(double)> accel = [](double) { return Vector3d(0, 0, 9.81); };
+  double t = 0.0;
+  std::mt19937_64 random{5};
+
+  Vector3d noise(double density) {
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53 * 2.0 - 1.0; };
+    return density * std::sqrt(3.0 * rate_hz) * Vector3d(uniform(), uniform(), uniform());  // of that variance
+  }
+
+  std::vector<ImuSample> packet() {
+    std::vector<ImuSample> samples;
+    const double end = t + kPacket_s;
+    const auto at = [&](double s) {
+      return ImuSample{timestamp_from_seconds(s), noise(gyro_noise), accel(s) + noise(accel_noise)};
+    };
+    samples.push_back(at(t - 0.3 / rate_hz));  // the ends are no readings
+    for (; t < end - 1e-9; t += 1.0 / rate_hz) samples.push_back(at(t));
+    samples.push_back(at(t - 0.3 / rate_hz));
+    return samples;
+  }
+};
+
+ImuNoise found_after(Imu imu, double duration_s) {
+  ImuNoiseEstimator estimator(kCalibrated);
+  for (double s = 0.0; s < duration_s; s += kPacket_s) estimator.add(imu.packet());
+  return estimator.noise();
+}
+
+TEST(ImuNoiseEstimator, KeepsTheCalibratedNoiseWhereItIsRight) {
+  for (const double rate_hz : {100.0, 200.0, 500.0, 1000.0}) {
+    const ImuNoise found = found_after({.rate_hz = rate_hz}, 3.0);
+    EXPECT_EQ(found.gyro_noise, kCalibrated.gyro_noise) << rate_hz;
+    EXPECT_EQ(found.accel_noise, kCalibrated.accel_noise) << rate_hz;
+  }
+}
+
+TEST(ImuNoiseEstimator, TakesNoMotionForNoise) {
+  for (const double rate_hz : {100.0, 200.0, 1000.0}) {
+    Imu imu{.rate_hz = rate_hz};
+    imu.accel = [](double t) { return Vector3d(6.0 * std::sin(12.0 * t), 4.0 * std::sin(9.0 * t), 9.81); };
+    EXPECT_EQ(found_after(imu, 3.0).accel_noise, kCalibrated.accel_noise) << rate_hz;
+  }
+}
+
+TEST(ImuNoiseEstimator, FindsWhiteNoiseAtAnyRate) {
+  for (const double rate_hz : {100.0, 200.0, 500.0, 1000.0}) {
+    const ImuNoise found = found_after({.rate_hz = rate_hz, .gyro_noise = 2e-3, .accel_noise = 0.05}, 3.0);
+    EXPECT_NEAR(found.gyro_noise, 2e-3, 0.8e-3) << rate_hz;
+    EXPECT_NEAR(found.accel_noise, 0.05, 0.02) << rate_hz;
+  }
+}
+
+/// A steady tone cancels in the integral, however strong it is.
+TEST(ImuNoiseEstimator, CountsOnlyWhatTheIntegralSees) {
+  Imu imu{.rate_hz = 1000.0};
+  imu.accel = [](double t) { return Vector3d(2.0 * std::sin(820.0 * t), 0, 9.81); };
+  EXPECT_LT(found_after(imu, 3.0).accel_noise, 2.0 * kCalibrated.accel_noise);
+}
+
+TEST(ImuNoiseEstimator, ForgetsMotorsAKnockAndGaps) {
+  Imu imu{.gyro_noise = 2e-3};
+  ImuNoiseEstimator estimator(kCalibrated);
+  for (int i = 0; i < 40; ++i) estimator.add(imu.packet());
+  EXPECT_GT(estimator.noise().gyro_noise, 1e-3);
+  imu.gyro_noise = kCalibrated.gyro_noise;
+  for (int i = 0; i < 24; ++i) estimator.add(imu.packet());
+  EXPECT_EQ(estimator.noise().gyro_noise, kCalibrated.gyro_noise);
+  imu.accel = [](double t) -> Vector3d { return {0.0, 20.0 * std::sin(700.0 * t), 9.81}; };
+  estimator.add(imu.packet());
+  imu.accel = [](double) { return Vector3d(0, 0, 9.81); };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(estimator.add(imu.packet()).accel_noise, kCalibrated.accel_noise);
+  imu.gyro_noise = 2e-3;
+  for (int i = 0; i < 40; ++i) estimator.add(imu.packet());
+  imu.t += 1.0;
+  EXPECT_EQ(estimator.add(imu.packet()).gyro_noise, kCalibrated.gyro_noise) << "too few samples to tell";
+}
+
+}  // namespace
+}  // namespace edged

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// The constants of the IMU that were chosen, not derived: each with its unit, its effect and its reason. A number in
+// brackets names the decision page (docs/decisions).
+#pragma once
+
+#include <cstddef>
+
+#include "edged/time.hpp"
+
+namespace edged {
+
+/// Knocks and gaps [022].
+struct ImuTuning {
+  double jump_share = 0.3;                               ///< share of a jump beyond the usual that is uncertain
+  double usual_gyro_jump = 1.0, usual_accel_jump = 4.0;  ///< [rad/s], [m/s^2] between two samples of a body in flight
+  /// Process noise in a gap, where the motion is assumed to continue: rates of 1.5 rad/s and accelerations of 5 m/s^2
+  /// that last for 0.1 s, as densities [rad/s/sqrt(Hz)], [m/s^2/sqrt(Hz)].
+  double gap_gyro_noise = 0.7, gap_accel_noise = 2.2;
+};
+inline constexpr ImuTuning kImuTuning{};
+
+/// The noise in use [022].
+struct ImuNoiseTuning {
+  Duration window = std::chrono::milliseconds(1000);     ///< of samples: the noise follows motors within half of it
+  Duration max_spacing = std::chrono::milliseconds(50);  ///< of samples; a longer gap begins anew
+  double short_block_s = 0.003, middle_block_s = 0.01;  ///< [s] too short for motion of the body, as are single samples
+  double long_block_s = 0.025;                          ///< [s] near the interval between states
+  std::size_t min_blocks = 9;                           ///< six third differences
+  double significant = 1.5;                             ///< times the calibrated density: less is its own scatter
+};
+inline constexpr ImuNoiseTuning kImuNoiseTuning{};
+
+}  // namespace edged
