@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "edged/core/angles.hpp"
+#include "edged/core/statistics.hpp"
 #include "edged/estimator/solver/covariance.hpp"
 #include "edged/estimator/solver/solver.hpp"
 #include "edged/estimator/tuning.hpp"
@@ -69,6 +71,13 @@ std::vector<CameraObservations> inflate_during_gyro_saturation(std::vector<Camer
   return observations;
 }
 
+double square(double x) { return x * x; }
+
+Vibration vibration_of(const ImuNoise& in_use, const ImuNoise& calibrated) {
+  return {std::sqrt(square(in_use.gyro_noise) - square(calibrated.gyro_noise)),
+          std::sqrt(square(in_use.accel_noise) - square(calibrated.accel_noise))};
+}
+
 /// Factor on covariances.
 double inflation(const Window& window, const EstimatorConfig& config) {
   const double sigmas = config.sigma_inflation * (sees_frames(window) ? 1.0 : kEstimatorTuning.events_alone_inflation);
@@ -90,10 +99,13 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
-  standstill_.add(input.motion.samples(), input.observations, input.events_quiet, gyro_bias());
-  result.standstill = standstill_.still() || stationary_by_vision();
+  standstill_.set_vibration(vibration_of(input.motion.noise(), noise_));
+  standstill_.add(input.motion.samples(), input.observations, input.events_quiet, gyro_bias(),
+                  [&] { return known_motion(input); });
+  const std::optional<double> turning = turning_in_place(input);
+  result.standstill = standstill_.still() || stationary_by_vision() || turning;
   if (start(input, result) || !initialized_) return result;
-  append(input);
+  append(input, turning);
   result.velocity_observed = external_.velocity_observed(input.t);
   result.outliers = reject_unexpected(window_);
   triangulate_features(window_, config_.landmarks);
@@ -137,6 +149,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
 /// Goes on in the window of an initialization.
 void Estimator::adopt(StartWindow start, EstimatorResult& result) {
   window_ = std::move(start.window);
+  supported_at_ = newest().t;
   for (std::size_t camera = 0; camera < known_intrinsics_.size(); ++camera)
     window_.set_intrinsics(camera, known_intrinsics_[camera]);
   scale_sigma_ = start.scale_sigma;
@@ -160,6 +173,49 @@ void Estimator::update_scale(const EstimatorInput& input) {
 bool Estimator::stationary_by_vision() const {
   return initialized_ && standstill_.image_static() && !landmarks_in_view_ &&
          newest().v_O.norm() < kEstimatorTuning.max_standstill_speed;
+}
+
+/// Standard deviation of the velocity of a body that has turned without translation for a while: features have been
+/// followed without a parallax that would tell their depth, and the estimate does not contradict. Nothing otherwise.
+std::optional<double> Estimator::turning_in_place(const EstimatorInput& input) const {
+  if (!initialized_ || input.t - supported_at_ < kEstimatorTuning.turning_after) return std::nullopt;
+  std::vector<double> ages_s;
+  for (const auto& [id, feature] : window_.features()) {
+    if (feature.observations.empty()) continue;
+    const Timestamp first = window_.states().at(feature.observations.begin()->first.state).t;
+    const bool seen =
+        std::ranges::any_of(feature.last_seen, [&](const auto& at) { return at.second == window_.newest_id(); });
+    if (seen && !feature.anchor) ages_s.push_back(to_seconds(input.t - first));
+  }
+  if (ages_s.size() < kStandstillTuning.min_features) return std::nullopt;
+  const double age_s = median(std::move(ages_s));
+  if (age_s < kEstimatorTuning.min_track_s) return std::nullopt;
+  const double sigma =
+      std::max(kEstimatorTuning.vision_rest_sigma, kLandmarkTuning.min_parallax_deg * kDegree * depth_m_ / age_s);
+  const std::optional<KnownMotion> known = known_motion(input);
+  const bool plausible = known && known->speed < std::max(kEstimatorTuning.max_standstill_speed,
+                                                          3.0 * std::hypot(known->speed_sigma, sigma));
+  return plausible ? std::optional(sigma) : std::nullopt;
+}
+
+/// The motion predicted to the input by the IMU; its uncertainty is that of the newest state and of the IMU since.
+std::optional<KnownMotion> Estimator::known_motion(const EstimatorInput& input) const {
+  if (!initialized_) return std::nullopt;
+  const std::optional<Matrix15d> P = covariance();
+  if (!P) return std::nullopt;
+  const Preintegration imu = since_newest(input);
+  KnownMotion known;
+  known.speed = propagate(newest(), imu).v_O.norm();
+  known.speed_sigma =
+      std::sqrt(P->diagonal().segment<3>(6).maxCoeff() + imu.covariance().diagonal().segment<3>(3).maxCoeff());
+  known.rate_sigma = std::sqrt(P->diagonal().segment<3>(9).maxCoeff() + square(kEstimatorTuning.gyro_bias_drift) +
+                               square(input.motion.noise().gyro_noise) / config_.standstill.window_s);
+  std::vector<double> depths;
+  for (const CameraObservations& view : input.observations)
+    for (const FeatureObservation& feature : view.features)
+      if (const auto z = depth(feature.id, view.camera)) depths.push_back(*z);
+  if (!depths.empty()) known.depth_m = median(std::move(depths));
+  return known;
 }
 
 Preintegration Estimator::since_newest(const EstimatorInput& input) const {
@@ -195,14 +251,14 @@ std::optional<LogScale> Estimator::depth_scale() const {
   return config_.depth_factor.enabled ? std::optional(depth_scale_) : std::nullopt;
 }
 
-void Estimator::append(const EstimatorInput& input) {
+void Estimator::append(const EstimatorInput& input, std::optional<double> turning) {
   const OdomState before = newest();
   Preintegration imu = since_newest(input);
   OdomState nav = propagate(before, imu);
   nav.t = input.t;
   WindowState state = window_state(nav, input.motion.samples().back().gyro_B, std::move(imu), input.keyframe);
   const bool stationary =
-      standstill_.still_by_imu() || (standstill_.still() && before.v_O.norm() < kEstimatorTuning.max_standstill_speed);
+      standstill_.still() && (standstill_.still_by_imu() || before.v_O.norm() < kEstimatorTuning.max_standstill_speed);
   state.stationary = stationary;
   const StateId id = window_.add_state(std::move(state), input.motion.gyro_clipped()
                                                              ? inflate_during_gyro_saturation(input.observations)
@@ -212,9 +268,17 @@ void Estimator::append(const EstimatorInput& input) {
   if (!stationary && stationary_by_vision())
     window_.add_soft_prior(
         motion_prior({BlockKind::Motion, id}, motion_block(rest), {kEstimatorTuning.vision_rest_sigma, kFree, kFree}));
+  if (turning && !stationary) {
+    // The error of the mean velocity lasts: all packets of a second are as good as one.
+    const double of_packet = *turning / std::sqrt(std::min(1.0, input.motion.dt()));
+    window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest), {of_packet, kFree, kFree}));
+  }
   if (!stationary) return;
   rest.bias_gyro = standstill_.mean_gyro_B();
-  const double bias_sigma = standstill_.still_by_imu() ? kEstimatorTuning.rest_gyro_bias_sigma : kFree;
+  // The means of successive packets overlap: each packet adds no more than its own samples tell.
+  const double bias_sigma = standstill_.still_by_imu() ? std::hypot(kEstimatorTuning.rest_gyro_bias_sigma,
+                                                                    standstill_.mean_gyro_sigma(input.motion.dt()))
+                                                       : kFree;
   window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest),
                                       {kInitializationTuning.zero_velocity_sigma, bias_sigma, kFree}));
 }
@@ -237,14 +301,18 @@ void Estimator::optimize(EstimatorResult& result, int iterations) {
   const StateId newest_id = window_.newest_id();
   result.landmarks.clear();
   result.landmarks_seen = 0;
+  std::vector<double> depths_m;
   for (const auto& [id, feature] : window_.features()) {
     if (!feature.anchor) continue;
     result.landmarks.push_back({id, window_.position(feature)});
+    if (feature.inverse_depth > 0.0) depths_m.push_back(1.0 / feature.inverse_depth);
     if (std::ranges::any_of(feature.last_seen, [&](const auto& seen) { return seen.second == newest_id; })) {
       ++result.landmarks_seen;
     }
   }
+  if (!depths_m.empty()) depth_m_ = median(std::move(depths_m));
   landmarks_in_view_ = result.landmarks_seen > 0;
+  if (result.landmarks_seen >= kEstimatorTuning.min_supporting || standstill_.still()) supported_at_ = newest().t;
 }
 
 /// Adapts the noise of each camera to its residuals. A large IMU strain means that the cameras agree on a wrong motion:

@@ -12,6 +12,7 @@
 #include "edged/estimator/initialization/initializer.hpp"
 #include "edged/estimator/solver/sliding.hpp"
 #include "edged/estimator/standstill/standstill.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/depth_terms.hpp"
 #include "edged/estimator/window/estimator_input.hpp"
 #include "edged/estimator/window/window.hpp"
@@ -71,9 +72,11 @@ class Estimator {
   bool start(const EstimatorInput& input, EstimatorResult& result);
   void adopt(StartWindow start, EstimatorResult& result);
   void update_scale(const EstimatorInput& input);
+  std::optional<KnownMotion> known_motion(const EstimatorInput& input) const;
   Preintegration since_newest(const EstimatorInput& input) const;
   bool stationary_by_vision() const;
-  void append(const EstimatorInput& input);
+  void append(const EstimatorInput& input, std::optional<double> turning);
+  std::optional<double> turning_in_place(const EstimatorInput& input) const;
   bool add_depth(const EstimatorInput& input);
   void optimize(EstimatorResult& result, int iterations);
   void adapt_noise(double imu_strain);
@@ -87,9 +90,11 @@ class Estimator {
   Initializer initializer_;
   std::vector<IntrinsicsCorrection> known_intrinsics_;
   bool initialized_ = false;
-  double scale_sigma_ = kFree;      ///< sigma of ln scale
-  bool landmarks_in_view_ = false;  ///< the newest state observes some
-  bool confirmed_ = false;          ///< two initializations agree, or none has contradicted one until confirmed_at_
+  double scale_sigma_ = kFree;                        ///< sigma of ln scale
+  bool landmarks_in_view_ = false;                    ///< the newest state observes some
+  Timestamp supported_at_;                            ///< enough landmarks in view, or at rest
+  double depth_m_ = kStandstillTuning.usual_depth_m;  ///< median of the landmarks, the last that there were
+  bool confirmed_ = false;  ///< two initializations agree, or none has contradicted one until confirmed_at_
   Timestamp confirmed_at_;
   LogScale depth_scale_;
 };

@@ -71,7 +71,16 @@ struct StandstillTuning {
   /// A mean rate is a turn, not a bias, if features move by this share of it or more; a turn about the optical axis
   /// hardly moves those in the middle. Rates that move them by less than min_turn times max_image_motion are ignored.
   double turn_share = 0.2, min_turn = 4.0;
-  double shaking = 6.0;  ///< times the spreads of a calm IMU: engines, a table that is knocked
+  double block_spread = 7.0;        ///< sigmas of a mean between the extremes of eight: 2.8 on average
+  int common_rounds = 3;            ///< refinements of the half of the features that agree best
+  double max_common_motion = 4e-4;  ///< [rad] travel over the window that features share; at rest 1e-5
+  double common_sigmas = 5.0;  ///< of that travel by its own scatter: less is noise; the half that agrees scatters less
+  double apart = 2.0;          ///< times max_image_motion at rest by features that do not move together: a lamp wanders
+  double moving_sigma = 3.5;   ///< a speed beyond so many sigmas is motion
+  double contradicted = 2.0;   ///< times max_image_motion: an estimate that moves the image by more would show in it
+  double usual_depth_m = 1.5;  ///< of the scene, where no landmark tells it
+  double unfelt_speed = 0.2;   ///< [m/s] of gentle motion, whose accelerations a quiet IMU hides
+  double shaking = 6.0;        ///< times the spreads of a calm IMU: engines, a table that is knocked
   Duration min_shaking = std::chrono::milliseconds(500);  ///< a body that starts to move has moved the image by then
 };
 inline constexpr StandstillTuning kStandstillTuning{};
@@ -180,6 +189,10 @@ struct EstimatorTuning {
 
   double max_standstill_speed = 0.15;  ///< [m/s] a faster body is not at rest, unless the IMU alone detects it [021]
   double vision_rest_sigma = 0.05;     ///< [m/s] of a body at rest by its image alone, near the estimate
+  Duration turning_after = std::chrono::milliseconds(500);  ///< without support: a body that moves has shown parallax
+  int min_supporting = 8;              ///< landmarks in view that bound the drift, as many as Good needs
+  double min_track_s = 0.2;            ///< median age of tracks that tell a turn in place
+  double gyro_bias_drift = 3e-4;       ///< [rad/s] of a gyro's bias since it was last observed
   double rest_gyro_bias_sigma = 5e-4;  ///< [rad/s] where the IMU alone detects a rest: a body at rest turns no faster
 };
 inline constexpr EstimatorTuning kEstimatorTuning{};

@@ -32,6 +32,9 @@ struct PipelineTuning {
   // Event frames (decisions 003, 013).
   double max_parallax_px = 5.0;        ///< image motion by translation over the events of one event frame
   double static_rate_per_pixel = 1.2;  ///< event rate below which the scene is static [1/s]
+  double static_rate_rise = 4.0;       ///< times the least rate before: it moves [021]
+  double least_rate_memory_s = 5.0;    ///< in which the least rate grows by a factor e
+  double noise_rate_per_pixel = 0.05;  ///< the least rate of noise [1/s]
   double subsampled_width_px = 400.0;  ///< beside good frames each n-th event of sensors n times as wide is rendered
   double min_structure = 1.2;          ///< least structure of an event frame that is tracked; noise alone has 1
   double max_alignment_px = 3.0;       ///< bound of the alignment correction

@@ -95,6 +95,7 @@ double scale_sigma(const Window& window) {
 
 InitializationResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest,
                                       double most_scale_sigma, const OdomState* running) {
+  noise_ = input.motion.noise();
   const bool new_view = buffer_view(input);
   if (rest != nullptr && rest->still()) {
     const double gravity = rest->mean_accel_B().norm();
@@ -178,11 +179,15 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
   const BlockKey pose{BlockKind::Pose, id}, motion{BlockKind::Motion, id};
   window.add_soft_prior(gauge_prior(pose, to_block(state.T_O_B), kInitializationTuning.gauge_sigma_m,
                                     kInitializationTuning.gauge_sigma_rad));
-  window.add_soft_prior(rest_prior(pose, first.pose, motion, first.motion, standstill.mean_accel_B(),
-                                   kInitializationTuning.rest_accel_sigma));
+  window.add_soft_prior(rest_prior(
+      pose, first.pose, motion, first.motion, standstill.mean_accel_B(),
+      std::hypot(kInitializationTuning.rest_accel_sigma, standstill.mean_accel_sigma(config_.standstill.window_s))));
   window.add_soft_prior(motion_prior(
       motion, motion_block(state),
-      {kInitializationTuning.zero_velocity_sigma, kInitializationTuning.rest_gyro_bias_sigma, prior.accel_sigma}));
+      {kInitializationTuning.zero_velocity_sigma,
+       std::hypot(kInitializationTuning.rest_gyro_bias_sigma, standstill.mean_gyro_sigma(config_.standstill.window_s)),
+       prior.accel_sigma}));
+  solve(window, kInitializationTuning.refine_iterations);  // the accelerometer's bias along gravity
   return window;
 }
 

@@ -70,7 +70,7 @@ class Initializer {
   bool knows_scale(const Alignment& alignment) const { return alignment.baseline_sigma <= config_.init_scale_sigma; }
 
   Rig rig_;
-  ImuNoise noise_;
+  ImuNoise noise_;  ///< as of the newest input
   EstimatorConfig config_;
   std::optional<BiasPrior> known_biases_;                 ///< by an earlier estimate
   std::vector<InitFrame> buffer_;                         ///< views, the oldest first

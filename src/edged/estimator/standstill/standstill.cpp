@@ -14,12 +14,6 @@
 namespace edged {
 namespace {
 
-Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
-  std::vector<double> x, y;
-  for (const Eigen::Vector2d& v : vectors) x.push_back(v.x()), y.push_back(v.y());
-  return {median(std::move(x)), median(std::move(y))};
-}
-
 /// True if samples are missing since then.
 bool has_gap(const std::deque<ImuSample>& samples, Timestamp since) {
   since = std::max(since, samples.front().t);
@@ -40,7 +34,8 @@ void StandstillConfig::visit(ConfigFields& fields) {
 }
 
 void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
-                             bool events_quiet, const Eigen::Vector3d& bias_gyro) {
+                             bool events_quiet, const Eigen::Vector3d& bias_gyro,
+                             const std::function<std::optional<KnownMotion>()>& motion) {
   if (imu.empty()) return;
   buffer(imu, observations, events_quiet);
   const Spread spread = spread_over(config_.window_s);
@@ -59,26 +54,30 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
     reason_ = fmt::format("turning steadily: {:.3f} rad/s", (mean_gyro_ - bias_gyro).norm());
     return;
   }
-  quiet_ = imu_quiet(kStandstillTuning.quiet_window_s * (image_glides() ? kStandstillTuning.glide_stretch : 1.0));
-  still_ = image_still() || quiet_;
-  if (still_) reason_.clear();
+  quiet_ = imu_quiet(kStandstillTuning.quiet_window_s * (image_.glides() ? kStandstillTuning.glide_stretch : 1.0));
+  rate_ = (mean_gyro_ - bias_gyro).norm();
+  const bool still = image_still();
+  if (!still && !quiet_) return;
+  const std::optional<KnownMotion> known = motion();
+  still_ = still ? !known || !hidden_from_image(*known) : !explains_image(known);
+  if (still_) {
+    reason_.clear();
+  } else {
+    quiet_ = false;
+  }
 }
 
-/// Keeps one sample and one view at or before the window's begin, so that the window is covered.
+/// Keeps one sample at or before the window's begin, so that the window is covered.
 void StandstillDetector::buffer(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
                                 bool events_quiet) {
   for (const ImuSample& sample : imu) {
     if (imu_.empty() || sample.t > imu_.back().t) imu_.push_back(sample);
   }
   const Timestamp now = imu_.back().t;
-  View& view = views_.emplace_back(View{now, {}, events_quiet});
-  for (const CameraObservations& camera : observations) {
-    for (const FeatureObservation& f : camera.features) view.points.emplace(f.id, f.point);
-  }
+  image_.add(now, observations, events_quiet);
   const double longest_s =
       std::max(config_.window_s, kStandstillTuning.glide_stretch * kStandstillTuning.quiet_window_s);
   while (imu_.size() > 1 && imu_[1].t <= now - duration_from_seconds(longest_s)) imu_.pop_front();
-  while (views_.size() > 1 && views_[1].t <= now - duration_from_seconds(config_.window_s)) views_.pop_front();
 }
 
 StandstillDetector::Spread StandstillDetector::spread_over(double window_s) const {
@@ -110,6 +109,16 @@ StandstillDetector::Spread StandstillDetector::spread_over(double window_s) cons
   return out;
 }
 
+double StandstillDetector::max_gyro_spread() const {
+  return config_.max_gyro + kStandstillTuning.block_spread * vibration_.gyro_noise /
+                                std::sqrt(config_.window_s / kStandstillTuning.blocks);
+}
+
+double StandstillDetector::max_accel_spread() const {
+  return config_.max_accel + kStandstillTuning.block_spread * vibration_.accel_noise /
+                                 std::sqrt(config_.window_s / kStandstillTuning.blocks);
+}
+
 bool StandstillDetector::imu_calm(const Spread& spread) {
   mean_gyro_ = spread.mean_gyro;
   mean_accel_ = spread.mean_accel;
@@ -117,13 +126,13 @@ bool StandstillDetector::imu_calm(const Spread& spread) {
     reason_ = fmt::format("{:.2f} of {:.2f} s of IMU", spread.covered_s, config_.window_s);
     return false;
   }
-  if (spread.gyro > config_.max_gyro || mean_gyro_.norm() > kStandstillTuning.max_gyro_mean) {
+  if (spread.gyro > max_gyro_spread() || mean_gyro_.norm() > kStandstillTuning.max_gyro_mean) {
     reason_ = fmt::format("turning: gyro spread {:.3f} of {:.3f} rad/s, mean {:.3f} of {:.3f} rad/s", spread.gyro,
-                          config_.max_gyro, mean_gyro_.norm(), kStandstillTuning.max_gyro_mean);
+                          max_gyro_spread(), mean_gyro_.norm(), kStandstillTuning.max_gyro_mean);
     return false;
   }
-  if (spread.accel > config_.max_accel) {
-    reason_ = fmt::format("accelerating: spread {:.3f} of {:.3f} m/s^2", spread.accel, config_.max_accel);
+  if (spread.accel > max_accel_spread()) {
+    reason_ = fmt::format("accelerating: spread {:.3f} of {:.3f} m/s^2", spread.accel, max_accel_spread());
     return false;
   }
   return true;
@@ -140,47 +149,50 @@ bool StandstillDetector::imu_quiet(double window_s) {
   return true;
 }
 
-/// Displacement on the unit plane of the features common to the window's first and last views.
-std::vector<Eigen::Vector2d> StandstillDetector::travels() const {
-  std::vector<Eigen::Vector2d> travels;
-  for (const auto& [id, point] : views_.back().points) {
-    const auto before = views_.front().points.find(id);
-    if (before != views_.front().points.end()) travels.push_back(point - before->second);
-  }
-  return travels;
-}
-
-/// Median length of the travels; nothing with too few features.
-std::optional<double> StandstillDetector::median_travel() const {
-  std::vector<double> lengths;
-  for (const Eigen::Vector2d& v : travels()) lengths.push_back(v.norm());
-  if (lengths.size() < kStandstillTuning.min_features) return std::nullopt;
-  return median(std::move(lengths));
-}
-
-/// Whether nearly all features move alike: so they do in uniform motion, which an IMU cannot measure; on dynamic
-/// objects seldom.
-bool StandstillDetector::image_glides() const {
-  const std::vector<Eigen::Vector2d> all = travels();
-  if (all.size() < kStandstillTuning.min_features) return false;
-  const Eigen::Vector2d middle = median_of(all);
-  if (middle.norm() <= kStandstillTuning.max_image_motion) return false;
-  const auto alike = std::ranges::count_if(all, [&](const Eigen::Vector2d& travel) {
-    return (travel - middle).norm() < kStandstillTuning.glide_spread * middle.norm();
-  });
-  return static_cast<double>(alike) > kStandstillTuning.glide_share * static_cast<double>(all.size());
-}
-
 /// True if the image moves as in a rotation of this rate, which the IMU alone cannot distinguish from a bias.
-bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) const {
+bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) {
   const double turned = rate.norm() * config_.window_s;
   if (turned < kStandstillTuning.min_turn * kStandstillTuning.max_image_motion) return false;
-  const std::optional<double> travel = median_travel();
+  const std::optional<double> travel = image_.median_travel();
   return travel && *travel > kStandstillTuning.turn_share * turned;
 }
 
-bool StandstillDetector::only_shakes(const Spread& spread) const {
-  const std::optional<double> travel = median_travel();
+/// Whether the estimate moves or the gyro turns by more than the uncertainty.
+bool StandstillDetector::moves(const KnownMotion& motion) {
+  const double most_speed = kStandstillTuning.moving_sigma * motion.speed_sigma,
+               most_rate = kStandstillTuning.moving_sigma * motion.rate_sigma;
+  if (motion.speed <= most_speed && rate_ <= most_rate) return false;
+  reason_ = fmt::format("moving at {:.3f} of {:.3f} m/s, turning at {:.4f} of {:.4f} rad/s", motion.speed, most_speed,
+                        rate_, most_rate);
+  return true;
+}
+
+/// Whether the body moves so slowly or so far from the scene that still images do not contradict it.
+bool StandstillDetector::hidden_from_image(const KnownMotion& motion) {
+  const double depth_m = motion.depth_m.value_or(kStandstillTuning.usual_depth_m);
+  const double travel = config_.window_s * (motion.speed / depth_m + rate_);
+  return moves(motion) && travel < kStandstillTuning.contradicted * kStandstillTuning.max_image_motion;
+}
+
+/// Whether the images move no faster than a motion that the estimate allows; before the start, as a whole, and no
+/// faster than in a motion that an IMU does not feel. Nothing to see explains nothing.
+bool StandstillDetector::explains_image(const std::optional<KnownMotion>& motion) {
+  if (motion && moves(*motion)) return true;
+  const std::optional<double> travel = image_.median_travel();
+  if (!travel || (!motion && !image_.glides())) return false;
+  double speed = kStandstillTuning.unfelt_speed, rate = 0.0;
+  if (motion) {
+    speed = motion->speed + kStandstillTuning.moving_sigma * motion->speed_sigma;
+    rate = kStandstillTuning.moving_sigma * motion->rate_sigma;
+  }
+  const double depth_m = motion && motion->depth_m ? *motion->depth_m : kStandstillTuning.usual_depth_m;
+  const double allowed = config_.window_s * (speed / depth_m + rate) + kStandstillTuning.max_image_motion;
+  reason_ = fmt::format("features move {:.4f} rad, {:.4f} by motion that the IMU does not feel", *travel, allowed);
+  return *travel < allowed;
+}
+
+bool StandstillDetector::only_shakes(const Spread& spread) {
+  const std::optional<double> travel = image_.median_travel();
   return spread.covered_s >= kStandstillTuning.min_cover * config_.window_s &&
          spread.gyro < kStandstillTuning.shaking * config_.max_gyro &&
          spread.mean_gyro.norm() < kStandstillTuning.max_gyro_mean &&
@@ -189,14 +201,19 @@ bool StandstillDetector::only_shakes(const Spread& spread) const {
 }
 
 bool StandstillDetector::image_still() {
-  const std::optional<double> travel = median_travel();
+  const std::optional<double> travel = image_.median_travel();
   if (!travel) {
-    reason_ = fmt::format("{} of {} features to distinguish rest from uniform motion", travels().size(),
+    reason_ = fmt::format("{} of {} features to distinguish rest from uniform motion", image_.features(),
                           kStandstillTuning.min_features);
-    return std::ranges::all_of(views_, &View::events_quiet);
+    return image_.events_quiet();
   }
-  reason_ = fmt::format("features move {:.4f} of {:.4f} rad", *travel, kStandstillTuning.max_image_motion);
-  return *travel <= kStandstillTuning.max_image_motion;
+  const ImageMotion::Common common = image_.common_travel();
+  const double most = std::max(kStandstillTuning.max_common_motion, kStandstillTuning.common_sigmas * common.sigma);
+  const bool together = common.travel > most;
+  reason_ = fmt::format("features move {:.4f} of {:.4f} rad, together {:.4f} of {:.4f}", *travel,
+                        kStandstillTuning.max_image_motion, common.travel, most);
+  if (quiet_) return *travel <= (together ? 1.0 : kStandstillTuning.apart) * kStandstillTuning.max_image_motion;
+  return *travel <= kStandstillTuning.max_image_motion && !together;
 }
 
 }  // namespace edged

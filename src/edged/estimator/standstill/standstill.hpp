@@ -1,32 +1,53 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Detects a standstill of the body. The IMU alone suffices if it has been as quiet as its own noise for a while, as a
-// camera at rest may show only dynamic objects. If the IMU has only been calm, for a shorter time, still images must
-// confirm it.
+// Detects a standstill of the body: a hypothesis that IMU, images and the estimate of the motion must support together.
+// Still images and a calm IMU confirm it, unless the estimate moves so slowly that the images could not show it. Images
+// that move do so by dynamic objects only if the IMU has been as quiet as its own noise for a while, and if the motion
+// that the estimate allows does not explain them.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <deque>
-#include <map>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "edged/core/observation.hpp"
+#include "edged/estimator/standstill/image_motion.hpp"
 #include "edged/measurement.hpp"
 #include "edged/options/estimator.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
 
+/// White noise of the IMU beyond the calibrated one, as motors cause it: densities as in ImuNoise.
+struct Vibration {
+  double gyro_noise = 0.0, accel_noise = 0.0;
+};
+
+/// What the estimate knows of the body's motion, without the images of the packet.
+struct KnownMotion {
+  double speed = 0.0, speed_sigma = 0.0;  ///< [m/s] sigma of the worst direction
+  double rate_sigma = 0.0;                ///< [rad/s] of a rate by the gyro, less its bias
+  std::optional<double> depth_m = {};     ///< median depth of the landmarks in view
+};
+
 class StandstillDetector {
  public:
-  explicit StandstillDetector(const StandstillConfig& config) : config_(config) {}
+  explicit StandstillDetector(const StandstillConfig& config) : config_(config), image_(config.window_s) {}
+
+  /// Vibration is no motion: with the next packets the IMU may shake as much.
+  void set_vibration(const Vibration& vibration) { vibration_ = vibration; }
 
   /// Takes one packet: its IMU, its features, and whether the event camera is quiet (static view). bias_gyro: its
-  /// estimate; a mean rate beyond it may be a steady turn.
-  void add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet,
-           const Eigen::Vector3d& bias_gyro = Eigen::Vector3d::Zero());
+  /// estimate; a mean rate beyond it may be a steady turn. motion: what is known of it, asked for where it decides;
+  /// nothing before the start.
+  void add(
+      const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations, bool events_quiet,
+      const Eigen::Vector3d& bias_gyro = Eigen::Vector3d::Zero(),
+      const std::function<std::optional<KnownMotion>()>& motion = [] { return std::nullopt; });
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
@@ -40,6 +61,9 @@ class StandstillDetector {
   /// Means over the window; meaningful when still.
   const Eigen::Vector3d& mean_gyro_B() const { return mean_gyro_; }
   const Eigen::Vector3d& mean_accel_B() const { return mean_accel_; }
+  /// Errors by the vibration of means over so many seconds.
+  double mean_gyro_sigma(double duration_s) const { return vibration_.gyro_noise / std::sqrt(duration_s); }
+  double mean_accel_sigma(double duration_s) const { return vibration_.accel_noise / std::sqrt(duration_s); }
 
  private:
   /// Means of the samples over the last part of the window, and the spread of its block means.
@@ -51,27 +75,26 @@ class StandstillDetector {
   void buffer(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
               bool events_quiet);
   Spread spread_over(double window_s) const;
+  /// The largest spread of block means at rest: the given one and what vibration adds.
+  double max_gyro_spread() const;
+  double max_accel_spread() const;
   bool imu_calm(const Spread& spread);
   bool imu_quiet(double window_s);
   bool image_still();
-  bool image_glides() const;
-  bool image_turns(const Eigen::Vector3d& rate) const;
-  bool only_shakes(const Spread& spread) const;
-  std::vector<Eigen::Vector2d> travels() const;
-  std::optional<double> median_travel() const;
-
-  struct View {
-    Timestamp t;
-    std::map<FeatureId, Eigen::Vector2d> points;
-    bool events_quiet = false;
-  };
+  bool hidden_from_image(const KnownMotion& motion);
+  bool explains_image(const std::optional<KnownMotion>& motion);
+  bool moves(const KnownMotion& motion);
+  bool image_turns(const Eigen::Vector3d& rate);
+  bool only_shakes(const Spread& spread);
 
   StandstillConfig config_;
+  Vibration vibration_;
   std::deque<ImuSample> imu_;
-  std::deque<View> views_;
+  ImageMotion image_;
   bool still_ = false, quiet_ = false, image_static_ = false;
   std::optional<Timestamp> shakes_since_;
   std::string reason_;
+  double rate_ = 0.0;  ///< [rad/s] mean rate less the known bias
   Eigen::Vector3d mean_gyro_ = Eigen::Vector3d::Zero(), mean_accel_ = Eigen::Vector3d::Zero();
 };
 

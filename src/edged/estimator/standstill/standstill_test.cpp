@@ -25,6 +25,7 @@ struct Readings {
   double corner_speed = 0.0;  ///< [1/s] on the unit plane
   int features = 40;
   bool events_quiet = false;
+  std::optional<KnownMotion> motion = {};
   bool walkers = false;  ///< every other feature goes the other way
 };
 
@@ -45,7 +46,7 @@ class Bench {
         const double way = readings.walkers && i % 2 == 1 ? -place_ : place_;
         seen.features.push_back({static_cast<FeatureId>(i + 1), {0.01 * i + way, 0.02 * (i % 7)}, 0.005});
       }
-      detector.add(imu, {seen}, readings.events_quiet);
+      detector.add(imu, {seen}, readings.events_quiet, Vector3d::Zero(), [&] { return readings.motion; });
     }
   }
 
@@ -210,6 +211,81 @@ TEST(StandstillDetector, ForgetsMotionAfterItsWindow) {
   EXPECT_FALSE(bench.detector.still());
   bench.run(0.1, {});
   EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
+}
+
+/// A quiet IMU, features that move together by 10 mrad over the window: 5 cm/s past a scene at 2 m.
+constexpr double kGentle = 0.025;
+const auto kNoBias = [](double) { return Vector3d(0.0001, 0, 0); };
+
+TEST(StandstillDetector, TakesGentleMotionThatTheEstimateAllowsForNoRest) {
+  const KnownMotion uncertain{.speed = 0.01, .speed_sigma = 0.02, .rate_sigma = 1e-3, .depth_m = 2.0};
+  Bench bench;
+  bench.run(4.0, {.gyro = kNoBias, .corner_speed = kGentle, .motion = uncertain});
+  EXPECT_FALSE(bench.detector.still());
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("motion that the IMU does not feel"));
+  const KnownMotion moving{.speed = 0.05, .speed_sigma = 0.005, .rate_sigma = 1e-3, .depth_m = 2.0};
+  bench.run(4.0, {.gyro = kNoBias, .corner_speed = kGentle, .motion = moving});
+  EXPECT_FALSE(bench.detector.still());
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("moving at 0.050 of 0.018 m/s"));
+}
+
+TEST(StandstillDetector, TakesMotionThatNoEstimateAllowsForThatOfObjects) {
+  const KnownMotion certain{.speed = 0.002, .speed_sigma = 0.003, .rate_sigma = 2e-4, .depth_m = 2.0};
+  Bench bench;
+  bench.run(3.0, {.gyro = kNoBias, .corner_speed = 0.3, .motion = certain});
+  EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
+}
+
+TEST(StandstillDetector, StartsInNoGentleMotion) {
+  Bench gentle, walked;
+  gentle.run(4.0, {.gyro = kNoBias, .corner_speed = 0.08});
+  EXPECT_FALSE(gentle.detector.still());
+  walked.run(4.0, {.gyro = kNoBias, .corner_speed = 0.4});
+  EXPECT_TRUE(walked.detector.still()) << walked.detector.reason();
+}
+
+TEST(StandstillDetector, StillImagesDoNotHideASlowTurnThatTheGyroTells) {
+  const Readings turning{.gyro = [](double) { return Vector3d(0, 0, 0.006); },
+                         .motion = KnownMotion{.speed_sigma = 0.01, .rate_sigma = 5e-4}};
+  Bench bench;
+  bench.run(1.0, turning);
+  EXPECT_FALSE(bench.detector.still());
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("turning at 0.0060 of 0.0018 rad/s"));
+  // An estimate that would move the images by far more is wrong.
+  const Readings diverged{.gyro = kNoBias,
+                          .motion = KnownMotion{.speed = 0.1, .speed_sigma = 0.01, .rate_sigma = 1e-3, .depth_m = 1.0}};
+  Bench still;
+  still.run(1.0, diverged);
+  EXPECT_TRUE(still.detector.still()) << still.detector.reason();
+}
+
+TEST(StandstillDetector, SeesSlowMotionThatFeaturesShare) {
+  // 2 mrad over the window, under half a pixel of 200; the IMU is calm, but not quiet.
+  const auto swaying = [](double t) { return Vector3d(0.009 * std::sin(9.0 * t), 0, 0); };
+  Bench bench;
+  bench.run(1.0, {.gyro = swaying, .corner_speed = 0.005});
+  EXPECT_FALSE(bench.detector.still());
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("together 0.0020 of 0.0004"));
+}
+
+TEST(StandstillDetector, TakesKnownVibrationForNoMotion) {
+  std::mt19937_64 random(3);
+  const auto noise = [&] { return static_cast<double>(random() >> 11) * 0x1p-53 * 2.0 - 1.0; };
+  Readings readings;
+  readings.accel = [&](double) { return Vector3d(noise(), noise(), 9.81 + noise()); };  // 0.041 m/s^2/sqrt(Hz)
+  int rests = 0, shaken = 0;
+  Bench known, unknown;
+  known.detector.set_vibration({.gyro_noise = 0.0, .accel_noise = 0.041});
+  for (int i = 0; i < 60; ++i) {
+    known.run(kPacket_s, readings);
+    unknown.run(kPacket_s, readings);
+    if (i < 10) continue;
+    rests += known.detector.still() ? 1 : 0;
+    shaken += unknown.detector.still() ? 0 : 1;
+  }
+  EXPECT_EQ(rests, 50) << known.detector.reason();
+  EXPECT_GT(shaken, 25);
+  EXPECT_NEAR(known.detector.mean_accel_sigma(0.4), 0.041 / std::sqrt(0.4), 1e-6);
 }
 
 /// A body permanently at rest; returns the estimator after duration_s.

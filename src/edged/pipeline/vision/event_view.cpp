@@ -31,8 +31,13 @@ EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
       min_events_(static_cast<std::size_t>(std::ceil(config.min_events_per_pixel * pixels()))),
       subsampling_(std::max(1, static_cast<int>(camera.width() / kPipelineTuning.subsampled_width_px))) {}
 
-bool EventView::is_static(const PacketEvents& events) const {
-  return events.event_rate_hz < kPipelineTuning.static_rate_per_pixel * pixels();
+bool EventView::is_static(const PacketEvents& events, Timestamp t) {
+  const double forgetting = std::exp(to_seconds(t - rated_at_) / kPipelineTuning.least_rate_memory_s);
+  least_rate_hz_ = std::min(least_rate_hz_ * forgetting, events.event_rate_hz);
+  rated_at_ = t;
+  const double least = std::max(least_rate_hz_, kPipelineTuning.noise_rate_per_pixel * pixels());
+  return events.event_rate_hz <
+         std::min(kPipelineTuning.static_rate_per_pixel * pixels(), kPipelineTuning.static_rate_rise * least);
 }
 
 EventsToRender EventView::rendered_events(const PacketEvents& events, const ImuPropagator& body, double scene_depth,

@@ -3,6 +3,7 @@
 // The event frame of a packet: selection, rendering and enhancement of its events.
 #pragma once
 
+#include <limits>
 #include <opencv2/core/mat.hpp>
 #include <span>
 #include <vector>
@@ -34,8 +35,9 @@ class EventView {
  public:
   EventView(const CameraModel& camera, const OdometryConfig& config);
 
-  /// Fewer events than any motion would cause.
-  bool is_static(const PacketEvents& events) const;
+  /// Fewer events than any motion would cause, and not many more than a few seconds before: where the light is dim,
+  /// slow motion causes few, too. Called with every packet.
+  bool is_static(const PacketEvents& events, Timestamp t);
   /// The events of the window for a frame: fewer in fast translation, where the warp blurs points away from the one
   /// scene depth (z, [m]). Rotation does not matter, as its warp does not depend on depth. body: predicted, at the time
   /// of the packet. Empty if there are too few. subsample: a wide sensor may use a part of its events, with a noisier
@@ -59,6 +61,8 @@ class EventView {
   double max_age_s_;
   std::size_t min_events_;
   int subsampling_;
+  double least_rate_hz_ = std::numeric_limits<double>::infinity();  ///< of events, in the last seconds
+  Timestamp rated_at_ = {};
   std::vector<Event> subsampled_;  ///< kept to reuse its memory
 };
 

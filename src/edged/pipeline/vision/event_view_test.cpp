@@ -101,10 +101,22 @@ TEST_F(EventViewTest, EnhancesOnlyWhereAskedTo) {
 }
 
 TEST_F(EventViewTest, IsStaticWhereNothingMoves) {
-  const EventView view(camera_.model, config_);
-  const double limit = kPipelineTuning.static_rate_per_pixel * kPixels * kSpan_s;
-  EXPECT_TRUE(view.is_static(packet_of(static_cast<std::size_t>(0.9 * limit))));
-  EXPECT_FALSE(view.is_static(packet_of(static_cast<std::size_t>(1.1 * limit))));
+  EventView view(camera_.model, config_);
+  Timestamp t = timestamp_from_seconds(1.0);
+  const auto is_static = [&](double rate_per_pixel) {
+    t += duration_from_seconds(kSpan_s);
+    return view.is_static(packet_of(static_cast<std::size_t>(rate_per_pixel * kPixels * kSpan_s)), t);
+  };
+  const double limit = kPipelineTuning.static_rate_per_pixel;
+  EXPECT_TRUE(is_static(0.9 * limit));
+  EXPECT_FALSE(is_static(1.1 * limit));
+  EXPECT_TRUE(is_static(0.9 * limit));
+  // In dim light noise is less and motion causes few events: their rate rises.
+  EXPECT_TRUE(is_static(0.1 * limit));
+  EXPECT_TRUE(is_static(0.3 * limit));
+  EXPECT_FALSE(is_static(0.9 * limit));
+  t += std::chrono::seconds(20);
+  EXPECT_TRUE(is_static(0.9 * limit)) << "the noise before is forgotten";
 }
 
 }  // namespace

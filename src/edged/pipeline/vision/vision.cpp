@@ -304,11 +304,13 @@ int Vision::features_wanted(const CameraTracker& tracker, Timestamp t) const {
                         event_views_.size());
 }
 
-bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_images) const {
-  bool is_static = !event_views_.empty();
-  for (std::size_t i = 0; i < event_views_.size(); ++i)
-    is_static = is_static && (event_images[i].noise || event_views_[i].is_static(packet.events[i]));
-  return is_static;
+bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_images) {
+  bool all = !event_views_.empty();
+  for (std::size_t i = 0; i < event_views_.size(); ++i) {
+    const bool few = event_views_[i].is_static(packet.events[i], packet.t);
+    all = all && (event_images[i].noise || few);
+  }
+  return all;
 }
 
 std::vector<TrackedImage> Vision::images_of(std::span<const CameraImage> views) const {

@@ -93,7 +93,7 @@ class Vision {
   bool frames_available(Timestamp t) const;
   bool frames_sufficient(Timestamp t) const;
   int features_wanted(const CameraTracker& tracker, Timestamp t) const;
-  bool is_static(const Packet& packet, std::span<const EventImage> event_images) const;
+  bool is_static(const Packet& packet, std::span<const EventImage> event_images);
   std::vector<TrackedImage> images_of(std::span<const CameraImage> views) const;
 
   OdometryConfig config_;
