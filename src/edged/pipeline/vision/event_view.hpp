@@ -35,7 +35,7 @@ class EventView {
  public:
   EventView(const CameraModel& camera, const OdometryConfig& config);
 
-  /// Fewer events than any motion would cause, and not many more than a few seconds before: where the light is dim,
+  /// Fewer events than any motion would cause, and not many more than a few seconds before: in little light
   /// slow motion causes few, too. Called with every packet.
   bool is_static(const PacketEvents& events, Timestamp t);
   /// The events of the window for a frame: fewer in fast translation, where the warp blurs points away from the one

@@ -111,7 +111,7 @@ TEST_F(EventViewTest, IsStaticWhereNothingMoves) {
   EXPECT_TRUE(is_static(0.9 * limit));
   EXPECT_FALSE(is_static(1.1 * limit));
   EXPECT_TRUE(is_static(0.9 * limit));
-  // In dim light noise is less and motion causes few events: their rate rises.
+  // In little light noise is less and motion causes few events: their rate rises.
   EXPECT_TRUE(is_static(0.1 * limit));
   EXPECT_TRUE(is_static(0.3 * limit));
   EXPECT_FALSE(is_static(0.9 * limit));
