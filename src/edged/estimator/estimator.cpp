@@ -193,8 +193,9 @@ std::optional<double> Estimator::turning_in_place(const EstimatorInput& input) c
   const double sigma =
       std::max(kEstimatorTuning.vision_rest_sigma, kLandmarkTuning.min_parallax_deg * kDegree * depth_m_ / age_s);
   const std::optional<KnownMotion> known = known_motion(input);
-  const bool plausible = known && known->speed < std::max(kEstimatorTuning.max_standstill_speed,
-                                                          3.0 * std::hypot(known->speed_sigma, sigma));
+  const bool plausible =
+      known && known->speed < std::max(kEstimatorTuning.max_standstill_speed,
+                                       kEstimatorTuning.consistent_sigma * std::hypot(known->speed_sigma, sigma));
   return plausible ? std::optional(sigma) : std::nullopt;
 }
 
@@ -265,22 +266,19 @@ void Estimator::append(const EstimatorInput& input, std::optional<double> turnin
                                                              : input.observations);
   external_.add(window_, std::prev(window_.states().find(id))->first, window_.newest().imu, input.external);
   OdomState rest;
-  if (!stationary && stationary_by_vision())
-    window_.add_soft_prior(
-        motion_prior({BlockKind::Motion, id}, motion_block(rest), {kEstimatorTuning.vision_rest_sigma, kFree, kFree}));
-  if (turning && !stationary) {
-    // The error of the mean velocity lasts: all packets of a second are as good as one.
-    const double of_packet = *turning / std::sqrt(std::min(1.0, input.motion.dt()));
-    window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest), {of_packet, kFree, kFree}));
-  }
+  const auto hold_velocity = [&](double sigma, double bias_sigma) {
+    window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest), {sigma, bias_sigma, kFree}));
+  };
+  if (!stationary && stationary_by_vision()) hold_velocity(kEstimatorTuning.vision_rest_sigma, kFree);
+  // The error of the mean velocity lasts: all packets of a second are as good as one.
+  if (!stationary && turning) hold_velocity(*turning / std::sqrt(std::min(1.0, input.motion.dt())), kFree);
   if (!stationary) return;
   rest.bias_gyro = standstill_.mean_gyro_B();
   // The means of successive packets overlap: each packet adds no more than its own samples tell.
   const double bias_sigma = standstill_.still_by_imu() ? std::hypot(kEstimatorTuning.rest_gyro_bias_sigma,
                                                                     standstill_.mean_gyro_sigma(input.motion.dt()))
                                                        : kFree;
-  window_.add_soft_prior(motion_prior({BlockKind::Motion, id}, motion_block(rest),
-                                      {kInitializationTuning.zero_velocity_sigma, bias_sigma, kFree}));
+  hold_velocity(kInitializationTuning.zero_velocity_sigma, bias_sigma);
 }
 
 /// Adds the depth of the input, if one is due and it passes the gate. Returns whether it did.

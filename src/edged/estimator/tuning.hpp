@@ -192,6 +192,7 @@ struct EstimatorTuning {
   Duration turning_after = std::chrono::milliseconds(500);  ///< without support: a body that moves has shown parallax
   int min_supporting = 8;              ///< landmarks in view that bound the drift, as many as Good needs
   double min_track_s = 0.2;            ///< median age of tracks that tell a turn in place
+  double consistent_sigma = 3.0;       ///< a turn in place is none if the speed is beyond so many of its sigmas
   double gyro_bias_drift = 3e-4;       ///< [rad/s] of a gyro's bias since it was last observed
   double rest_gyro_bias_sigma = 5e-4;  ///< [rad/s] where the IMU alone detects a rest: a body at rest turns no faster
 };

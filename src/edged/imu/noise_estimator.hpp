@@ -22,7 +22,6 @@ class ImuNoiseEstimator {
   /// Takes the samples of a packet, whose ends are interpolated ones (slice_imu). Returns the noise of the last second:
   /// the calibrated one, or more.
   const ImuNoise& add(const std::vector<ImuSample>& imu);
-  const ImuNoise& noise() const { return noise_; }
 
  private:
   ImuNoise calibrated_, noise_;

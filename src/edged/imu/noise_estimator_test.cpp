@@ -44,8 +44,9 @@ struct Imu {
 
 ImuNoise found_after(Imu imu, double duration_s) {
   ImuNoiseEstimator estimator(kCalibrated);
-  for (double s = 0.0; s < duration_s; s += kPacket_s) estimator.add(imu.packet());
-  return estimator.noise();
+  ImuNoise found;
+  for (double s = 0.0; s < duration_s; s += kPacket_s) found = estimator.add(imu.packet());
+  return found;
 }
 
 TEST(ImuNoiseEstimator, KeepsTheCalibratedNoiseWhereItIsRight) {
@@ -82,11 +83,11 @@ TEST(ImuNoiseEstimator, CountsOnlyWhatTheIntegralSees) {
 TEST(ImuNoiseEstimator, ForgetsMotorsAKnockAndGaps) {
   Imu imu{.gyro_noise = 2e-3};
   ImuNoiseEstimator estimator(kCalibrated);
-  for (int i = 0; i < 40; ++i) estimator.add(imu.packet());
-  EXPECT_GT(estimator.noise().gyro_noise, 1e-3);
+  for (int i = 0; i < 39; ++i) estimator.add(imu.packet());
+  EXPECT_GT(estimator.add(imu.packet()).gyro_noise, 1e-3);
   imu.gyro_noise = kCalibrated.gyro_noise;
-  for (int i = 0; i < 24; ++i) estimator.add(imu.packet());
-  EXPECT_EQ(estimator.noise().gyro_noise, kCalibrated.gyro_noise);
+  for (int i = 0; i < 23; ++i) estimator.add(imu.packet());
+  EXPECT_EQ(estimator.add(imu.packet()).gyro_noise, kCalibrated.gyro_noise);
   imu.accel = [](double t) -> Vector3d { return {0.0, 20.0 * std::sin(700.0 * t), 9.81}; };
   estimator.add(imu.packet());
   imu.accel = [](double) { return Vector3d(0, 0, 9.81); };

@@ -51,7 +51,7 @@ class StandstillDetector {
 
   /// True when the whole window was at rest.
   bool still() const { return still_; }
-  /// True when the IMU alone detects it, independent of cameras and estimate.
+  /// True at standstill if the IMU has been as quiet as its own noise: it needs no still images then.
   bool still_by_imu() const { return quiet_; }
   /// True if the image has been static for a while although the IMU is not calm: rest on something that shakes, or
   /// motion too slow to see.

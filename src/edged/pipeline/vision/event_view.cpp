@@ -33,7 +33,8 @@ EventView::EventView(const CameraModel& camera, const OdometryConfig& config)
 
 bool EventView::is_static(const PacketEvents& events, Timestamp t) {
   const double forgetting = std::exp(to_seconds(t - rated_at_) / kPipelineTuning.least_rate_memory_s);
-  least_rate_hz_ = std::min(least_rate_hz_ * forgetting, events.event_rate_hz);
+  // In this order: after hours without an event the product is no number.
+  least_rate_hz_ = std::min(events.event_rate_hz, least_rate_hz_ * forgetting);
   rated_at_ = t;
   const double least = std::max(least_rate_hz_, kPipelineTuning.noise_rate_per_pixel * pixels());
   return events.event_rate_hz <
