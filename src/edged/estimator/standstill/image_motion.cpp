@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "edged/core/statistics.hpp"
@@ -24,7 +25,8 @@ Eigen::Vector2d median_of(const std::vector<Eigen::Vector2d>& vectors) {
 void ImageMotion::add(Timestamp t, const std::vector<CameraObservations>& observations, bool events_quiet) {
   View& view = views_.emplace_back(View{t, {}, events_quiet});
   for (const CameraObservations& camera : observations) {
-    for (const FeatureObservation& f : camera.features) view.points.emplace(f.id, f.point);
+    std::map<FeatureId, Eigen::Vector2d>& points = view.points[camera.camera];
+    for (const FeatureObservation& f : camera.features) points.emplace(f.id, f.point);
   }
   while (views_.size() > 1 && views_[1].t <= t - duration_from_seconds(window_s_)) views_.pop_front();
   travels_.reset();
@@ -32,31 +34,24 @@ void ImageMotion::add(Timestamp t, const std::vector<CameraObservations>& observ
 
 bool ImageMotion::events_quiet() const { return std::ranges::all_of(views_, &View::events_quiet); }
 
-/// From the first view to the last. Where cameras take turns these may share too few features: then from the first
-/// observation of each to its last, if they are half of the window apart.
+/// From the first image of each camera to its last: cameras take turns, so that these need not be in the first and the
+/// last packet. Half of the window must lie between them.
 const std::vector<Eigen::Vector2d>& ImageMotion::travels() {
   if (travels_) return *travels_;
   travels_.emplace();
-  for (const auto& [id, point] : views_.back().points) {
-    const auto before = views_.front().points.find(id);
-    if (before != views_.front().points.end()) travels_->push_back(point - before->second);
-  }
-  if (travels_->size() >= kStandstillTuning.min_features) return *travels_;
-  struct Seen {
-    Timestamp first_t, last_t;
-    Eigen::Vector2d first, last;
-  };
-  std::map<FeatureId, Seen> features;
-  for (const View& view : views_) {
-    for (const auto& [id, point] : view.points) {
-      Seen& seen = features.try_emplace(id, Seen{view.t, view.t, point, point}).first->second;
-      seen.last_t = view.t, seen.last = point;
+  std::set<std::string> done;
+  for (auto last = views_.rbegin(); last != views_.rend(); ++last) {
+    for (const auto& [camera, points] : last->points) {
+      if (!done.insert(camera).second) continue;
+      const auto first = std::ranges::find_if(views_, [&](const View& view) { return view.points.contains(camera); });
+      const double span_s = to_seconds(last->t - first->t);
+      if (span_s < 0.5 * window_s_) continue;
+      for (const auto& [id, point] : points) {
+        const auto before = first->points.at(camera).find(id);
+        if (before == first->points.at(camera).end()) continue;
+        travels_->push_back((point - before->second) * (window_s_ / span_s));
+      }
     }
-  }
-  travels_->clear();
-  for (const auto& [id, seen] : features) {
-    const double span_s = to_seconds(seen.last_t - seen.first_t);
-    if (span_s >= 0.5 * window_s_) travels_->push_back((seen.last - seen.first) * (window_s_ / span_s));
   }
   return *travels_;
 }

@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "edged/core/observation.hpp"
@@ -39,7 +40,7 @@ class ImageMotion {
  private:
   struct View {
     Timestamp t;
-    std::map<FeatureId, Eigen::Vector2d> points;
+    std::map<std::string, std::map<FeatureId, Eigen::Vector2d>> points;  ///< of each camera
     bool events_quiet = false;
   };
   /// Ways of the features over the window, on the unit plane.

@@ -27,6 +27,7 @@ struct Readings {
   bool events_quiet = false;
   std::optional<KnownMotion> motion = {};
   bool walkers = false;  ///< every other feature goes the other way
+  int lifetime = 1000;   ///< packets, after which a feature is another one; staggered
 };
 
 class Bench {
@@ -41,10 +42,12 @@ class Bench {
       }
       t_ += kPacket_s;
       place_ += kPacket_s * readings.corner_speed;
+      ++packet_;
       CameraObservations seen{"frames", {}};
       for (int i = 0; i < readings.features; ++i) {
         const double way = readings.walkers && i % 2 == 1 ? -place_ : place_;
-        seen.features.push_back({static_cast<FeatureId>(i + 1), {0.01 * i + way, 0.02 * (i % 7)}, 0.005});
+        const int id = i + 1 + (packet_ + i) / readings.lifetime * 1000;
+        seen.features.push_back({static_cast<FeatureId>(id), {0.01 * i + way, 0.02 * (i % 7)}, 0.005});
       }
       detector.add(imu, {seen}, readings.events_quiet, Vector3d::Zero(), [&] { return readings.motion; });
     }
@@ -54,6 +57,7 @@ class Bench {
 
  private:
   double t_ = 1.0, place_ = 0.0;
+  int packet_ = 0;
 };
 
 TEST(StandstillDetector, SeesRestOnceItsWindowIsFull) {
@@ -179,6 +183,29 @@ TEST(StandstillDetector, BelievesAQuietImuThoughAllThatIsSeenWalks) {
   bench.run(0.1, {.corner_speed = 0.05, .walkers = true});
   EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
   EXPECT_TRUE(bench.detector.still_by_imu());
+}
+
+TEST(StandstillDetector, TakesObjectsThatPassTooFastToBeFollowedForNoMotion) {
+  Bench bench;
+  bench.run(0.75, {.corner_speed = 0.85, .lifetime = 6});  // 0.3 s each, under the window
+  EXPECT_TRUE(bench.detector.still()) << bench.detector.reason();
+}
+
+TEST(StandstillDetector, FollowsFeaturesOfCamerasThatTakeTurns) {
+  StandstillDetector detector({});
+  for (int packet = 0; packet < 20; ++packet) {
+    const double t = 1.0 + kPacket_s * packet;
+    std::vector<ImuSample> imu;
+    for (int i = 0; i <= 10; ++i)
+      imu.push_back({timestamp_from_seconds(t - kPacket_s + 0.005 * i), Vector3d::Zero(), Vector3d(0, 0, 9.81)});
+    const bool events = packet % 2 == 0;
+    CameraObservations seen{events ? "events" : "frames", {}};
+    for (int i = 0; i < 6; ++i)
+      seen.features.push_back({static_cast<FeatureId>(i + (events ? 1 : 100)), {0.1 * i + 0.025 * t, 0.0}, 0.005});
+    detector.add(imu, {seen}, false);
+  }
+  EXPECT_FALSE(detector.still());
+  EXPECT_THAT(detector.reason(), HasSubstr("features move 0.0100"));
 }
 
 TEST(StandstillDetector, ACalmHandIsNoQuietImu) {
