@@ -34,7 +34,7 @@ std::string reason_of(const Step& step) {
       return step.lost_because;
     default:
       if (step.relocalized) return "relocalized in the map";
-      return step.started.empty() ? "" : "started " + step.started;
+      return step.started.empty() ? step.degraded_because : "started " + step.started;
   }
 }
 

@@ -59,7 +59,8 @@ class RunLog : public RunObserver {
     if (std::exchange(status_, step.status) == step.status) return;
     if (step.status == TrackingStatus::Lost)
       spdlog::warn(fmt::format("lost at {:.3f} s: {}; starting again", t_s, step.lost_because));
-    spdlog::info(fmt::format("{:.3f} s: {}", t_s, to_string(step.status)));
+    const std::string why = step.degraded_because.empty() ? "" : ", " + step.degraded_because;
+    spdlog::info(fmt::format("{:.3f} s: {}{}", t_s, to_string(step.status), why));
   }
 
   void on_end(const RunEnd& end) override {

@@ -63,6 +63,7 @@ void RunStatistics::add(const Step& step) {
   last_status_ = step.status;
   ln_depth_scale_ = step.ln_depth_scale;
   if (is_tracking(step.status)) accel_bias_ = step.state.bias_accel;
+  if (is_tracking(step.status) && step.covariance) scale_.add(step.t, step.state.v_W, step.covariance->velocity);
   if (!step.waiting_for.empty()) waiting_for_ = step.waiting_for;
   if (!step.lost_because.empty()) lost_because_ = step.lost_because;
   tilt_sigma_deg_ = step.attitude ? std::optional(tilt_sigma_deg_of(*step.attitude)) : std::nullopt;

@@ -10,8 +10,10 @@
 #include <string>
 
 #include "common/step_numbers.hpp"
+#include "edged/eval/metrics.hpp"
 #include "edged/measurement.hpp"
 #include "edged/odometry.hpp"
+#include "edged/pipeline/localization/scale_uncertainty.hpp"
 
 namespace edged {
 
@@ -46,6 +48,8 @@ class RunStatistics {
   /// What the last initialization waited for, and what ended the last estimate; may be empty.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
+  /// Relative standard deviation of the way travelled, see ScaleUncertainty; nothing if it is short.
+  std::optional<double> scale_sigma() const { return scale_.sigma(kShortestPath_m); }
   /// Sigma of roll and pitch in the last packet, while Initializing; nothing without an attitude.
   std::optional<double> tilt_sigma_deg() const { return tilt_sigma_deg_; }
   /// The last estimate [m/s^2].
@@ -64,6 +68,7 @@ class RunStatistics {
   TrackingStatus last_status_ = TrackingStatus::Initializing;
   std::optional<LogScale> ln_depth_scale_;
   std::string waiting_for_, lost_because_;
+  ScaleUncertainty scale_;
   std::optional<double> tilt_sigma_deg_;
   Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
 };

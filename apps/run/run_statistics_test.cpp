@@ -74,6 +74,22 @@ TEST(RunStatistics, KeepWhatWasLastWaitedFor) {
   EXPECT_EQ(statistics.lost_because(), "no 8 landmarks for 2.5 s");
 }
 
+TEST(RunStatistics, KnowHowCertainTheWayIs) {
+  RunStatistics statistics;
+  Step step = step_at(0.0, TrackingStatus::Good);
+  step.covariance = StateCovariance{};
+  step.covariance->velocity = Eigen::Vector3d(0.05 * 0.05, 0.0, 0.0).asDiagonal();
+  step.state.v_W = {0.2, 0.0, 0.0};
+  for (int i = 0; i < 40; ++i) {
+    step.t = at(0.1 * i);
+    if (i == 20) {
+      EXPECT_FALSE(statistics.scale_sigma()) << "0.4 m are too short";
+    }
+    statistics.add(step);
+  }
+  EXPECT_NEAR(statistics.scale_sigma().value(), 0.25, 1e-9);
+}
+
 TEST(RunStatistics, KnowTheTiltOfAnAttitudeWhateverItsHeading) {
   RunStatistics statistics;
   Step step = step_at(0, TrackingStatus::Initializing);

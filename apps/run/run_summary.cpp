@@ -128,6 +128,7 @@ void add_progress(Figures& out, const RunStatistics& s) {
                    {"packets", s.packets()},
                    {"coverage", s.coverage()},
                    {"first_good_s", number_or_null(s.first_good_s())},
+                   {"scale_sigma", number_or_null(s.scale_sigma())},
                    {"loops_closed", s.loops_closed()},
                    {"times_lost", s.times_lost()},
                    {"duration_s", s.visual_span_s()}});

@@ -73,6 +73,17 @@ void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
                    "check its axes, scale and unit, and the pose of the cameras to it"});
 }
 
+/// A motion may be too gentle for an IMU to tell its size.
+void judge_scale(const RunStatistics& run, std::vector<Finding>& out) {
+  constexpr double kMost = 0.2;  // as status.max_scale_sigma
+  if (run.scale_sigma().value_or(0.0) > kMost)
+    out.push_back({Severity::Error,
+                   fmt::format("scale: known to {:.0f} %, as the motion is too gentle for this IMU: distances may be "
+                               "off by that share",
+                               100.0 * *run.scale_sigma()),
+                   "move faster, use a second camera of known distance, or a height or velocity sensor"});
+}
+
 /// With --localize-only a loss is silence: no pose depends on dead reckoning.
 void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Finding>& out) {
   constexpr double kMostLost = 0.1;
@@ -212,6 +223,7 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
     }
   if (ever_good) {
     judge_losses(statistics, s.run.localize_only, verdict.findings);
+    judge_scale(statistics, verdict.findings);
     if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);
   }
   if (s.live) judge_live(*s.live, statistics, verdict.findings);

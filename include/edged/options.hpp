@@ -55,6 +55,7 @@ struct StatusConfig {
   int min_landmarks = 8;          ///< landmarks that the newest state must observe for a Good pose
   double degraded_strain = 0.75;  ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
   double lost_strain = 0.85;      ///< the first time; see StatusMonitor
+  double max_scale_sigma = 0.2;   ///< relative, see ScaleUncertainty
   void visit(ConfigFields& fields);
 };
 

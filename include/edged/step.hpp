@@ -75,9 +75,10 @@ struct Step {
   SE3 T_M_O;
   std::vector<MapMatch> map_matches;  ///< map points observed in an image of this packet; they correct T_M_O
 
-  std::string waiting_for;   ///< without an estimate: why initialization has not succeeded yet, with numbers
-  std::string started;       ///< set if the estimator was initialized with this packet: how, with numbers
-  std::string lost_because;  ///< while Lost: what ended the last estimate, with numbers
+  std::string waiting_for;       ///< without an estimate: why initialization has not succeeded yet, with numbers
+  std::string started;           ///< set if the estimator was initialized with this packet: how, with numbers
+  std::string lost_because;      ///< while Lost: what ended the last estimate, with numbers
+  std::string degraded_because;  ///< while Degraded: why the pose is not Good, with numbers
 
   std::vector<CameraStep> cameras;                     ///< event cameras, then frame cameras, in the order of the rig
   std::vector<Landmark> landmarks;                     ///< landmarks of the window after the optimization

@@ -160,6 +160,8 @@ class Step(_BodyState):
     @property
     def lost_because(self) -> str: ...
     @property
+    def degraded_because(self) -> str: ...
+    @property
     def contradicted(self) -> bool:
         """While lost: the cameras contradicted the IMU, so the last poses before are wrong."""
     @property

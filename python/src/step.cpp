@@ -147,6 +147,7 @@ void bind_step(py::module_& module) {
       .def_readonly("waiting_for", &Step::waiting_for)
       .def_readonly("started", &Step::started)
       .def_readonly("lost_because", &Step::lost_because)
+      .def_readonly("degraded_because", &Step::degraded_because)
       .def_readonly("contradicted", &Step::contradicted)
       .def_property_readonly("cameras", &cameras_of)
       .def_readonly("scene_depth", &Step::scene_depth)

@@ -43,7 +43,9 @@ std::vector<std::string> troubles_of(const std::string& topic, const InputCounte
 }  // namespace
 
 void StatusLog::add(const Step& step) {
-  reason_ = step.status == TrackingStatus::Lost ? step.lost_because : step.waiting_for;
+  reason_ = step.status == TrackingStatus::Lost       ? step.lost_because
+            : step.status == TrackingStatus::Degraded ? step.degraded_because
+                                                      : step.waiting_for;
   if (!step.started.empty()) spdlog::info(step.started);
   if (std::exchange(status_, step.status) == step.status) return;
   const auto level = step.status == TrackingStatus::Lost ? spdlog::level::warn : spdlog::level::info;

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The whole system on recordings that begin in mid-motion.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <iostream>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "end_to_end.hpp"
 
@@ -57,6 +60,25 @@ INSTANTIATE_TEST_SUITE_P(Simulated, StartInMotion,
                                          MovingStart{"dark", "dark", 37}, MovingStart{"dark_too", "dark", 38},
                                          MovingStart{"large_biases", "room", 41, 0.8, 0.1, 0.5}),
                          [](const auto& test) { return test.param.name; });
+
+// The scale of a slow start is not certain; at rest the velocity is.
+TEST(StartInMotion, IsMadeCertainByARest) {
+  SimulatorConfig config = simulator_preset("room");
+  config.seed = 45;
+  config.duration_s = 3.0;
+  config.motion.rest_s = config.motion.blend_s = 0.0;
+  config.motion.max_speed = 0.2;
+  config.motion.go_s = config.motion.pause_s = 1.5;
+  const Flight flight = simulate_flight(config);
+  const FlightRun run = run_flight(flight.calibration, flight.measurements, Mode::Events);
+  std::vector<std::string> started;
+  for (const Step& step : run.steps)
+    if (!step.started.empty()) started.push_back(step.started);
+  ASSERT_GT(started.size(), 1U);
+  EXPECT_THAT(started.front(), testing::StartsWith("in motion"));
+  EXPECT_EQ(started.back(), "at rest");
+  EXPECT_EQ(run.steps.back().status, TrackingStatus::Good);
+}
 
 }  // namespace
 }  // namespace edged

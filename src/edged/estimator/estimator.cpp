@@ -129,8 +129,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
   const double replacing = confirmed_ ? kEstimatorTuning.better_scale * scale_sigma_ : scale_sigma_;
   const double wanted = initialized_ ? replacing : config_.provisional_scale_sigma;
   InitializationResult found =
-      initializer_.add(input, running ? nullptr : &standstill_, std::max(wanted, config_.init_scale_sigma),
-                       running ? &*running : nullptr);
+      initializer_.add(input, standstill_, std::max(wanted, config_.init_scale_sigma), running ? &*running : nullptr);
   if (found.inlier_share < kEstimatorTuning.min_inlier_share)
     confirmed_at_ = input.t + kEstimatorTuning.confirmation_time;
   result.waiting_for = std::move(found.waiting_for);

@@ -57,6 +57,7 @@ struct PipelineTuning {
   Duration bias_history = std::chrono::seconds(10);
   double gyro_drift = 2e-3;   ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
   double accel_drift = 0.02;  ///< drift of the accelerometer's bias [m/s^2]
+  double scale_memory_s = 10.0, least_travel_m = 0.05;  ///< motion, by which the scale is judged
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

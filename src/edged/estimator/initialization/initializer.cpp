@@ -61,8 +61,9 @@ double turned_rad(const std::vector<ImuSample>& imu) {
 std::string views_text(int views, int wanted) { return fmt::format("{} of {} views in motion", views, wanted); }
 
 std::string scale_text(double sigma, double most) {
+  constexpr double kMost = 9.99;  // also where it is not a number
   return fmt::format("motion that determines the scale: known to {:.0f} %, {:.0f} % required",
-                     100.0 * std::min(sigma, 9.99), 100.0 * most);
+                     100.0 * (sigma < kMost ? sigma : kMost), 100.0 * most);
 }
 
 /// How well the newest state is known: standard deviations of its tilt [rad] and its velocity [m/s], of the worst
@@ -93,24 +94,23 @@ double scale_sigma(const Window& window) {
   return std::sqrt(way.dot(P->topLeftCorner<3, 3>() * way)) / way.squaredNorm();
 }
 
-InitializationResult Initializer::add(const EstimatorInput& input, const StandstillDetector* rest,
+InitializationResult Initializer::add(const EstimatorInput& input, const StandstillDetector& rest,
                                       double most_scale_sigma, const OdomState* running) {
   noise_ = input.motion.noise();
   const bool new_view = buffer_view(input);
-  if (rest != nullptr && rest->still()) {
-    const double gravity = rest->mean_accel_B().norm();
+  if (rest.still()) {
+    const double gravity = rest.mean_accel_B().norm();
     if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error) {
       return {{}, fmt::format("an accelerometer in m/s^2: it measures {:.2f} of 9.81 at rest", gravity)};
     }
-    return {StartWindow{start_at_rest(input, *rest)}};
+    return {StartWindow{start_at_rest(input, rest)}};
   }
   if (new_view) {
     InitializationResult result = start_in_motion(most_scale_sigma, running);
     if (result.start || running != nullptr) return result;
     missing_in_motion_ = std::move(result.waiting_for);
   }
-  return {{},
-          rest == nullptr ? missing_in_motion_ : fmt::format("rest ({}) or {}", rest->reason(), missing_in_motion_)};
+  return {{}, fmt::format("rest ({}) or {}", rest.reason(), missing_in_motion_)};
 }
 
 /// Keeps the input as a view if the next one is due. Returns whether it did.

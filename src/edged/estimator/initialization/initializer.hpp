@@ -44,10 +44,10 @@ class Initializer {
               const std::optional<BiasPrior>& biases = {})
       : rig_(rig), noise_(noise), config_(config), known_biases_(biases) {}
 
-  /// Inputs in time order. rest, which has processed the input already: for an initialization at rest; null to disable
-  /// that. An initialization in motion must have a scale sigma of at most most_scale_sigma. running: the estimate at
-  /// the input, where there is one already.
-  InitializationResult add(const EstimatorInput& input, const StandstillDetector* rest, double most_scale_sigma,
+  /// Inputs in time order. rest, which has processed the input already: for an initialization at rest. An
+  /// initialization in motion must have a scale sigma of at most most_scale_sigma. running: the estimate at the input,
+  /// where there is one already.
+  InitializationResult add(const EstimatorInput& input, const StandstillDetector& rest, double most_scale_sigma,
                            const OdomState* running = nullptr);
 
  private:

@@ -84,7 +84,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
       output.correction);
-  const TrackingStatus of_odometry = status_.update(result, session_.bias_change, session_.estimator.initialized(), t);
+  const TrackingStatus of_odometry = status_.update(result, session_.uncertainty, session_.estimator.initialized(), t);
   const bool relocalized = update_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
   update_covariance(t);
@@ -119,6 +119,7 @@ Step Localization::describe(Timestamp t, TrackingStatus status, EstimatorResult 
     step.lost_because = status_.reason();
     step.contradicted = status_.contradicted();
   }
+  if (status == TrackingStatus::Degraded) step.degraded_because = status_.reason();
   step.T_M_O = odom_to_map.T_M_O();
   step.ln_depth_scale = session_.estimator.depth_scale();
   if (config_.map.localize_only && !is_tracking(status)) return step;  // what follows would be in another frame
@@ -142,6 +143,8 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   // The drift of the map filter is that of an odometry with a gyro: without one, the pose is as uncertain as after a
   // loss.
   if (result.new_frame) {
+    session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
+    session_.uncertainty.scale_sigma.reset();
     mapper_.restart(T_new_old, body_.now());
   } else if (body_.gyro_was_saturated()) {
     mapper_.reset_uncertainty(body_.now());
@@ -232,7 +235,10 @@ void Localization::update_covariance(Timestamp t) {
   session_.covariance.reset();
   session_.covariance_at = t;
   if (const std::optional<Matrix15d> P = session_.estimator.covariance()) {
-    if (!session_.estimator.provisional()) session_.bias_change = session_.biases.add(session_.estimator.newest(), *P);
+    const OdomState& newest = session_.estimator.newest();
+    if (!session_.estimator.provisional()) session_.uncertainty.bias_change = session_.biases.add(newest, *P);
+    session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
+    session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
     const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
     session_.covariance = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
                            R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};

@@ -17,8 +17,10 @@
 #include "edged/pipeline/localization/bias_history.hpp"
 #include "edged/pipeline/localization/imu_propagator.hpp"
 #include "edged/pipeline/localization/online_calibration.hpp"
+#include "edged/pipeline/localization/scale_uncertainty.hpp"
 #include "edged/pipeline/localization/status_monitor.hpp"
 #include "edged/pipeline/mapping/mapper.hpp"
+#include "edged/pipeline/tuning.hpp"
 #include "edged/pipeline/vision/vision.hpp"
 #include "edged/rig.hpp"
 #include "edged/step.hpp"
@@ -65,7 +67,8 @@ class Localization {
     ExternalCounters earlier_counters;    ///< sum over earlier sessions
     Timestamp dead_reckoning_until;       ///< before the start
     BiasHistory biases;
-    double bias_change = 0.0;  ///< as of the last covariance [sigma]
+    ScaleUncertainty scale{kPipelineTuning.scale_memory_s};  ///< of the present start
+    Uncertainty uncertainty = {};                            ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
   };

@@ -21,6 +21,10 @@ void StatusConfig::visit(ConfigFields& fields) {
   fields.add(
       "lost_strain", lost_strain,
       {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
+  fields.add("max_scale_sigma", max_scale_sigma,
+             {"", 0.01, 10,
+              "The status is Degraded while the way travelled is uncertain by more than this share: the motion is too "
+              "gentle for the IMU."});
 }
 
 void StatusMonitor::set_lost(std::string reason) {
@@ -44,7 +48,21 @@ std::string StatusMonitor::contradiction(double imu_strain, double bias_change) 
       bias_change, kPipelineTuning.max_bias_change);
 }
 
-TrackingStatus StatusMonitor::update(const EstimatorResult& result, double bias_change, bool started, Timestamp t) {
+/// Why the estimate is not Good although it goes on; empty if it is.
+std::string StatusMonitor::doubt(const EstimatorResult& result, const std::optional<double>& scale_sigma) const {
+  if (result.provisional) return "the scale of the start is not certain yet";
+  if (since_visual_update_s_ > config_.degraded_after_s)
+    return fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);
+  if (const double most = strain_limit_factor_ * config_.degraded_strain; result.imu_strain > most)
+    return fmt::format("cameras and IMU disagree ({:.2f} of {:.2f} sigma)", result.imu_strain, most);
+  if (scale_sigma && *scale_sigma > config_.max_scale_sigma)
+    return fmt::format("motion too gentle for this IMU: scale known to {:.0f} %, {:.0f} % required",
+                       100.0 * std::min(*scale_sigma, 9.99), 100.0 * config_.max_scale_sigma);
+  return "";
+}
+
+TrackingStatus StatusMonitor::update(const EstimatorResult& result, const Uncertainty& uncertainty, bool started,
+                                     Timestamp t) {
   if (!started) {
     last_supported_.reset();
     last_velocity_.reset();
@@ -56,15 +74,14 @@ TrackingStatus StatusMonitor::update(const EstimatorResult& result, double bias_
   since_visual_update_s_ = to_seconds(t - *last_supported_);
   const double drifting_s =
       last_velocity_ ? std::min(since_visual_update_s_, to_seconds(t - *last_velocity_)) : since_visual_update_s_;
-  reason_ = result.plausible ? contradiction(result.imu_strain, bias_change) : "the solution has diverged";
+  reason_ = result.plausible ? contradiction(result.imu_strain, uncertainty.bias_change) : "the solution has diverged";
   contradicted_ = !reason_.empty();
   vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
   if (vision_lost_)
     reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);
   if (!reason_.empty()) return TrackingStatus::Lost;
-  const bool doubtful = result.provisional || since_visual_update_s_ > config_.degraded_after_s ||
-                        result.imu_strain > strain_limit_factor_ * config_.degraded_strain;
-  return doubtful ? TrackingStatus::Degraded : TrackingStatus::Good;
+  reason_ = doubt(result, uncertainty.scale_sigma);
+  return reason_.empty() ? TrackingStatus::Good : TrackingStatus::Degraded;
 }
 
 TrackingStatus StatusMonitor::update_in_map(TrackingStatus of_odometry, const std::string& unlocalized) {

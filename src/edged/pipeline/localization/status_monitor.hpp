@@ -14,6 +14,12 @@
 
 namespace edged {
 
+/// Whether the estimate itself says that it may be wrong.
+struct Uncertainty {
+  double bias_change = 0.0;                ///< of the IMU, see BiasHistory [sigma]
+  std::optional<double> scale_sigma = {};  ///< relative, see ScaleUncertainty
+};
+
 /// Determines the tracking status from the estimator's results, packet by packet. Each loss by IMU strain raises its
 /// limit by half: strain that recurs after a new start is not caused by the scene, but by an IMU noisier than its
 /// calibration.
@@ -22,14 +28,14 @@ class StatusMonitor {
   explicit StatusMonitor(const StatusConfig& config) : config_(config) {}
 
   /// The status of a packet at t; while the estimator has not started, Initializing before its first start and Lost
-  /// after. bias_change: of the IMU, see BiasHistory [sigma].
-  TrackingStatus update(const EstimatorResult& result, double bias_change, bool started, Timestamp t);
+  /// after.
+  TrackingStatus update(const EstimatorResult& result, const Uncertainty& uncertainty, bool started, Timestamp t);
   /// With map.localize_only there is a pose only while the body is localized in the map. of_odometry: by update;
   /// unlocalized: why the body is not localized; empty if it is.
   TrackingStatus update_in_map(TrackingStatus of_odometry, const std::string& unlocalized);
   /// The estimate was ended by another part.
   void set_lost(std::string reason);
-  /// Why the last status was Lost, with numbers.
+  /// Why the last status was Lost or Degraded, with numbers.
   const std::string& reason() const { return reason_; }
   /// The last loss was by a contradiction of cameras and IMU: the last poses before are wrong.
   bool contradicted() const { return contradicted_; }
@@ -40,6 +46,7 @@ class StatusMonitor {
 
  private:
   std::string contradiction(double imu_strain, double bias_change);
+  std::string doubt(const EstimatorResult& result, const std::optional<double>& scale_sigma) const;
 
   StatusConfig config_;
   bool ever_started_ = false, ever_localized_ = false;
