@@ -77,8 +77,8 @@ TEST(RunStatistics, KeepWhatWasLastWaitedFor) {
 TEST(RunStatistics, KnowHowCertainTheWayIs) {
   RunStatistics statistics;
   Step step = step_at(0.0, TrackingStatus::Good);
-  step.covariance = StateCovariance{};
-  step.covariance->velocity = Eigen::Vector3d(0.05 * 0.05, 0.0, 0.0).asDiagonal();
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
+  step.covariance = {none, none, Eigen::Vector3d(0.05 * 0.05, 0.0, 0.0).asDiagonal()};
   step.state.v_W = {0.2, 0.0, 0.0};
   for (int i = 0; i < 40; ++i) {
     step.t = at(0.1 * i);

@@ -70,27 +70,6 @@ class Bench(unittest.TestCase):
         self.assertTrue(2.0 < other.pop("light") < 3.0)
         self.assertEqual(other, {name: value for name, value in first.items() if name != "light"})
 
-    def test_space_calls_silent_what_is_good_and_beyond_three_sigma_for_half_a_second(self):
-        space = script("space")
-        # East in the truth is north in the estimate, which moves at twice the speed.
-        turn = [0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)]
-        truth = types.SimpleNamespace(at=lambda t: ([t, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]))
-        covariance = {f"{of}_{axes}_{unit}": (1e-4 if axes[0] == axes[1] else 0.0) if of == "p" else 0.0
-                      for of, unit in (("p", "m2"), ("r", "rad2")) for axes in ("xx", "xy", "xz", "yy", "yz", "zz")}
-
-        def silent(speed, statuses=("Good",) * 200, sigma_m=0.01):
-            rows = [{**covariance, "t_ns": 1e7 * i, "status": status, "relocalized": 0.0, "px_m": 0.0, "py_m": 0.01 * i * speed, "pz_m": 0.0,
-                     **dict(zip(("qx", "qy", "qz", "qw"), turn)), "p_zz_m2": sigma_m ** 2 * (1.0 + 1e-3 * i), "p_yy_m2": sigma_m ** 2}
-                    for i, status in enumerate(statuses)]
-            return space.silent_s(rows, truth)
-
-        self.assertEqual(silent(1.0), 0.0)
-        # Beyond 3 sqrt(2) cm from 0.05 s on.
-        self.assertAlmostEqual(silent(2.0), 1.94, delta=0.011)
-        self.assertAlmostEqual(silent(2.0, sigma_m=0.1), 1.57, delta=0.011)
-        self.assertEqual(silent(2.0, ("Good",) * 50 + ("Lost",) + ("Good",) * 50), 0.0)
-        self.assertEqual(silent(2.0, ("Good", *("Degraded",) * 150)), 0.0)
-
     def test_space_shrinks_a_draw_to_the_options_with_which_it_fails_in_the_same_way(self):
         space = script("space")
         draw = space.Draw(types.SimpleNamespace(seed=1, duration=12.0), 7)

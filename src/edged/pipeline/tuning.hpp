@@ -55,9 +55,10 @@ struct PipelineTuning {
   double strain_limit_growth = 1.5;  ///< factor on the limits of strain after each loss by it
   double max_bias_change = 3.0;      ///< [sigma]; up to 2.1 without dynamic objects
   Duration bias_history = std::chrono::seconds(10);
-  double gyro_drift = 2e-3;   ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
-  double accel_drift = 0.02;  ///< drift of the accelerometer's bias [m/s^2]
-  double scale_memory_s = 10.0, least_travel_m = 0.05;  ///< motion, by which the scale is judged
+  double gyro_drift = 2e-3;      ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
+  double accel_drift = 0.02;     ///< drift of the accelerometer's bias [m/s^2]
+  double scale_memory_s = 10.0;  ///< of motion, by which the scale is judged
+  double least_travel_m = 0.15;  ///< of a shorter way the share does not matter: a fifth of it is 3 cm
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

@@ -59,11 +59,16 @@ struct Anchor {
   }
 };
 
+/// One error over its covariance.
+struct Normalized {
+  double nees = 0.0;
+  bool within = true;  ///< three sigma, on each axis by itself
+};
+
 /// Adds up the errors of one kind.
 class Sum {
  public:
-  /// NEES of the error.
-  double add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, double least_sigma = kLeastSigma) {
+  Normalized add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, double least_sigma = kLeastSigma) {
     const Eigen::Matrix3d P = covariance + least_sigma * least_sigma * Eigen::Matrix3d::Identity();
     const double nees = error.dot(P.ldlt().solve(error));
     const Eigen::Array3d sigmas = error.array().abs() / P.diagonal().array().sqrt();
@@ -72,7 +77,7 @@ class Sum {
     max_nees_ = std::max(max_nees_, nees);
     within_ += nees <= kChiSquare ? 1.0 : 0.0;
     axes_within_ += (sigmas <= 3.0).cast<double>().matrix();
-    return nees;
+    return {nees, (sigmas <= 3.0).all()};
   }
 
   NormalizedErrors mean() const {
@@ -170,20 +175,21 @@ class ConsistencySums {
   /// The truth must outlive this.
   explicit ConsistencySums(const Trajectory& truth) : true_velocity_(truth) {}
 
-  /// Whether position and rotation are consistent with their covariances.
+  /// Whether position and rotation are within three sigma.
   bool add(const PosePair& pair, const StateCovarianceSample& sample, const Anchor& anchor, bool first_start) {
     const SE3 T_W_B = anchor.T_Wtrue_W * pair.estimate;
     const Eigen::Vector3d error = T_W_B.translation() - pair.truth.translation();
     const Eigen::Matrix3d P = anchor.in_true_W(sample.covariance.position) + anchor.of_position(T_W_B.translation());
     of_each_.push_back({pair.t, error, P.diagonal().cwiseSqrt()});
-    const double position = position_.add(error, P);
-    const double rotation = rotation_.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
-                                          sample.covariance.rotation + anchor.of_rotation(T_W_B));
+    const Normalized position = position_.add(error, P);
+    const Normalized rotation = rotation_.add(so3::log(T_W_B.rotation().conjugate() * pair.truth.rotation()),
+                                              sample.covariance.rotation + anchor.of_rotation(T_W_B));
     const std::optional<double> velocity = add_velocity(pair, sample, anchor);
     if (first_start) {
-      at_.add(to_seconds(pair.t - anchor.t), {position, rotation, velocity.value_or(0.0)}, velocity.has_value());
+      at_.add(to_seconds(pair.t - anchor.t), {position.nees, rotation.nees, velocity.value_or(0.0)},
+              velocity.has_value());
     }
-    return position <= kChiSquare && rotation <= kChiSquare;
+    return position.within && rotation.within;
   }
 
   void write(Consistency& result) {
@@ -200,8 +206,9 @@ class ConsistencySums {
     const auto true_v = sample.t == pair.t ? true_velocity_.at(pair.t) : std::nullopt;
     if (!true_v || sample.covariance.velocity.isZero(0.0)) return std::nullopt;
     const Eigen::Vector3d v = anchor.T_Wtrue_W.rotation() * sample.v_W;
-    return velocity_.add(v - *true_v, anchor.in_true_W(sample.covariance.velocity) + anchor.of_vector(v),
-                         kLeastVelocitySigma);
+    return velocity_
+        .add(v - *true_v, anchor.in_true_W(sample.covariance.velocity) + anchor.of_vector(v), kLeastVelocitySigma)
+        .nees;
   }
 
   VelocityOf true_velocity_;
@@ -237,8 +244,8 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<StateCo
       start = sample->start;
       ++result.starts;
     }
-    const bool consistent = errors.add(pair, *sample, *anchor, result.starts == 1);
-    silent.add(pair.t, sample->good && !consistent);
+    const bool within = errors.add(pair, *sample, *anchor, result.starts == 1);
+    silent.add(pair.t, sample->good && !within);
   }
   errors.write(result);
   result.silent = silent.take();

@@ -49,8 +49,8 @@ struct Consistency {
   std::size_t poses = 0, starts = 0;
   NormalizedErrors position, rotation, velocity;
   std::vector<NeesAt> at;  ///< some instants of the first start: kNeesAt_s, as far as the run reaches
-  /// Time spans of silent divergence: for more than 0.5 s all poses are Good, but position or rotation are beyond the
-  /// 99.73 %.
+  /// Time spans of silent divergence: for more than 0.5 s all poses are Good, but position or rotation are beyond three
+  /// sigma on an axis.
   std::vector<TimeSpan> silent;
   std::vector<PoseErrorSample> errors;  ///< errors of each pose
 

@@ -126,6 +126,16 @@ TEST(Consistency, GoodPosesBeyondTheirBoundsForHalfASecondAreASilentDivergence) 
   EXPECT_NEAR(found.silent_s(), 3.0, 0.041);
 }
 
+TEST(Consistency, ThreeSigmaAreThoseOfEachAxis) {
+  const Trajectory truth = winding_motion(20.0);
+  const std::vector<StateCovarianceSample> exact = covariance_samples_of(truth, 0.0, SE3());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d sigma = std::sqrt(kPosition(axis, axis)) * Eigen::Vector3d::Unit(axis);
+    EXPECT_EQ(check_consistency(truth, shifted(exact, 5.0, 8.0, 2.95 * sigma)).silent.size(), 0U) << axis;
+    EXPECT_EQ(check_consistency(truth, shifted(exact, 5.0, 8.0, 3.05 * sigma)).silent.size(), 1U) << axis;
+  }
+}
+
 TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
   const Trajectory truth = winding_motion(20.0);
   std::vector<StateCovarianceSample> samples = shifted(covariance_samples_of(truth), 5.0, 8.0, {0.5, 0.5, 0.5});

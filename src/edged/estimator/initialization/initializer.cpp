@@ -98,7 +98,7 @@ InitializationResult Initializer::add(const EstimatorInput& input, const Standst
                                       double most_scale_sigma, const OdomState* running) {
   noise_ = input.motion.noise();
   const bool new_view = buffer_view(input);
-  if (rest.still()) {
+  if (rest.at_rest()) {
     const double gravity = rest.mean_accel_B().norm();
     if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error) {
       return {{}, fmt::format("an accelerometer in m/s^2: it measures {:.2f} of 9.81 at rest", gravity)};

@@ -39,14 +39,16 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
   if (imu.empty()) return;
   buffer(imu, observations, events_quiet);
   const Spread spread = spread_over(config_.window_s);
-  still_ = quiet_ = image_static_ = false;
+  still_ = quiet_ = image_static_ = shaken_ = false;
   const bool gap = has_gap(imu_, imu_.back().t - duration_from_seconds(kStandstillTuning.quiet_window_s));
   if (gap || !imu_calm(spread)) {
+    const std::string why = gap ? "IMU samples are missing" : reason_;
     const bool stands = gap ? image_still() : only_shakes(spread);
-    if (gap) reason_ = "IMU samples are missing";
+    reason_ = why;
     if (!stands) return shakes_since_.reset();
     if (!shakes_since_) shakes_since_ = imu_.back().t;
     image_static_ = imu_.back().t - *shakes_since_ >= kStandstillTuning.min_shaking;
+    shaken_ = image_static_ && !gap;
     return;
   }
   shakes_since_.reset();
@@ -192,12 +194,10 @@ bool StandstillDetector::explains_image(const std::optional<KnownMotion>& motion
 }
 
 bool StandstillDetector::only_shakes(const Spread& spread) {
-  const std::optional<double> travel = image_.median_travel();
   return spread.covered_s >= kStandstillTuning.min_cover * config_.window_s &&
          spread.gyro < kStandstillTuning.shaking * config_.max_gyro &&
          spread.mean_gyro.norm() < kStandstillTuning.max_gyro_mean &&
-         spread.accel < kStandstillTuning.shaking * config_.max_accel && travel &&
-         *travel <= kStandstillTuning.max_image_motion;
+         spread.accel < kStandstillTuning.shaking * config_.max_accel && image_.median_travel() && image_still();
 }
 
 bool StandstillDetector::image_still() {

@@ -53,12 +53,14 @@ class StandstillDetector {
   bool still() const { return still_; }
   /// True at standstill if the IMU has been as quiet as its own noise: it needs no still images then.
   bool still_by_imu() const { return quiet_; }
-  /// True if the image has been static for a while although the IMU is not calm: rest on something that shakes, or
-  /// motion too slow to see.
+  /// True if the image has been static for a while although the IMU is not calm, or has a gap: rest on something that
+  /// shakes, or motion too slow to see.
   bool image_static() const { return image_static_; }
+  /// True at rest, also on something that shakes: a start needs no more.
+  bool at_rest() const { return still_ || shaken_; }
   /// Why it is no standstill, with numbers; empty at standstill.
   const std::string& reason() const { return reason_; }
-  /// Means over the window; meaningful when still.
+  /// Means over the window; meaningful at rest.
   const Eigen::Vector3d& mean_gyro_B() const { return mean_gyro_; }
   const Eigen::Vector3d& mean_accel_B() const { return mean_accel_; }
   /// Errors by the vibration of means over so many seconds.
@@ -91,7 +93,7 @@ class StandstillDetector {
   Vibration vibration_;
   std::deque<ImuSample> imu_;
   ImageMotion image_;
-  bool still_ = false, quiet_ = false, image_static_ = false;
+  bool still_ = false, quiet_ = false, image_static_ = false, shaken_ = false;
   std::optional<Timestamp> shakes_since_;
   std::string reason_;
   double rate_ = 0.0;  ///< [rad/s] mean rate less the known bias

@@ -132,9 +132,12 @@ TEST(StandstillDetector, SeesAPictureThatStandsWhileTheImuShakes) {
   bench.run(0.6, {.accel = engines});
   EXPECT_FALSE(bench.detector.still() || bench.detector.image_static()) << "who starts to move looks alike";
   bench.run(0.5, {.accel = engines});
-  EXPECT_TRUE(bench.detector.image_static()) << bench.detector.reason();
+  EXPECT_TRUE(bench.detector.image_static() && bench.detector.at_rest()) << bench.detector.reason();
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("accelerating"));
   bench.run(0.5, {.accel = engines, .corner_speed = 0.05});
-  EXPECT_FALSE(bench.detector.image_static());
+  EXPECT_FALSE(bench.detector.image_static() || bench.detector.at_rest());
+  bench.run(2.0, {.accel = engines, .corner_speed = 0.002});
+  EXPECT_FALSE(bench.detector.at_rest()) << "2 mm/s at 1 m is motion";
 }
 
 TEST(StandstillDetector, SeesAPush) {
