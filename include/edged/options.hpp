@@ -52,10 +52,11 @@ struct HealthConfig {
 struct StatusConfig {
   double degraded_after_s = 0.7;  ///< without enough landmarks or rest
   double lost_after_s = 2.5;
-  int min_landmarks = 8;          ///< landmarks that the newest state must observe for a Good pose
-  double degraded_strain = 0.75;  ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
-  double lost_strain = 0.85;      ///< the first time; see StatusMonitor
-  double max_scale_sigma = 0.2;   ///< relative, see ScaleUncertainty
+  int min_landmarks = 8;            ///< landmarks that the newest state must observe for a Good pose
+  double degraded_strain = 0.75;    ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
+  double lost_strain = 0.85;        ///< the first time; see StatusMonitor
+  double max_scale_sigma = 0.2;     ///< relative, see ScaleUncertainty
+  double max_velocity_sigma = 0.3;  ///< [m/s] usual is below 0.2 in the gentlest motion
   void visit(ConfigFields& fields);
 };
 

@@ -11,6 +11,8 @@
 
 namespace edged {
 
+inline double square(double x) { return x * x; }
+
 /// Upper median; 0 for no values.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;

@@ -71,8 +71,6 @@ std::vector<CameraObservations> inflate_during_gyro_saturation(std::vector<Camer
   return observations;
 }
 
-double square(double x) { return x * x; }
-
 Vibration vibration_of(const ImuNoise& in_use, const ImuNoise& calibrated) {
   return {std::sqrt(square(in_use.gyro_noise) - square(calibrated.gyro_noise)),
           std::sqrt(square(in_use.accel_noise) - square(calibrated.accel_noise))};

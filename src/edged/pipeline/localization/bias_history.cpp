@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/core/statistics.hpp"
 #include "edged/pipeline/tuning.hpp"
 
 namespace edged {
-namespace {
-
-double squared(double x) { return x * x; }
-
-}  // namespace
-
 double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
   while (!entries_.empty() && state.t - entries_.front().t > kPipelineTuning.bias_history) entries_.pop_front();
   Entry now{state.t, {}, P.diagonal().tail<6>()};
@@ -22,8 +17,8 @@ double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
   for (const Entry& before : entries_) {
     const double dt = to_seconds(now.t - before.t);
     Vector6d variance = before.variance;
-    variance.head<3>().array() += squared(kPipelineTuning.gyro_drift) + squared(noise_.gyro_walk) * dt;
-    variance.tail<3>().array() += squared(kPipelineTuning.accel_drift) + squared(noise_.accel_walk) * dt;
+    variance.head<3>().array() += square(kPipelineTuning.gyro_drift) + square(noise_.gyro_walk) * dt;
+    variance.tail<3>().array() += square(kPipelineTuning.accel_drift) + square(noise_.accel_walk) * dt;
     most = std::max(most, ((now.bias - before.bias).array() / variance.array().sqrt()).abs().maxCoeff());
   }
   entries_.push_back(now);
@@ -32,8 +27,8 @@ double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
 
 BiasPrior BiasHistory::prior(const Entry& entry) {
   const double gyro = entry.variance.head<3>().maxCoeff(), accel = entry.variance.tail<3>().maxCoeff();
-  return {entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + squared(kPipelineTuning.gyro_drift)),
-          std::sqrt(accel + squared(kPipelineTuning.accel_drift))};
+  return {entry.bias.head<3>(), entry.bias.tail<3>(), std::sqrt(gyro + square(kPipelineTuning.gyro_drift)),
+          std::sqrt(accel + square(kPipelineTuning.accel_drift))};
 }
 
 }  // namespace edged

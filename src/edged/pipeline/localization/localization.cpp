@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -239,6 +240,8 @@ void Localization::update_covariance(Timestamp t) {
     if (!session_.estimator.provisional()) session_.uncertainty.bias_change = session_.biases.add(newest, *P);
     session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
     session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
+    session_.uncertainty.velocity_sigma = std::max(
+        0.0, std::sqrt(P->diagonal().segment<3>(6).maxCoeff()) - kPipelineTuning.velocity_share * newest.v_O.norm());
     const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
     session_.covariance = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
                            R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};

@@ -21,6 +21,9 @@ void StatusConfig::visit(ConfigFields& fields) {
   fields.add(
       "lost_strain", lost_strain,
       {"sigma", 0.01, 1000, "The status is Lost when they exceed this. The bound grows by half after each such loss."});
+  fields.add("max_velocity_sigma", max_velocity_sigma,
+             {"m/s", 0.01, 100,
+              "The status is Degraded while the velocity is less certain than this and a tenth of the speed."});
   fields.add("max_scale_sigma", max_scale_sigma,
              {"", 0.01, 10,
               "The status is Degraded while the way travelled is uncertain by more than this share: the motion is too "
@@ -49,15 +52,18 @@ std::string StatusMonitor::contradiction(double imu_strain, double bias_change) 
 }
 
 /// Why the estimate is not Good although it goes on; empty if it is.
-std::string StatusMonitor::doubt(const EstimatorResult& result, const std::optional<double>& scale_sigma) const {
+std::string StatusMonitor::doubt(const EstimatorResult& result, const Uncertainty& uncertainty) const {
   if (result.provisional) return "the scale of the start is not certain yet";
   if (since_visual_update_s_ > config_.degraded_after_s)
     return fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);
   if (const double most = strain_limit_factor_ * config_.degraded_strain; result.imu_strain > most)
     return fmt::format("cameras and IMU disagree ({:.2f} of {:.2f} sigma)", result.imu_strain, most);
-  if (scale_sigma && *scale_sigma > config_.max_scale_sigma)
+  if (uncertainty.velocity_sigma > config_.max_velocity_sigma)
+    return fmt::format("velocity known to {:.2f} m/s, {:.2f} required", uncertainty.velocity_sigma,
+                       config_.max_velocity_sigma);
+  if (const double sigma = uncertainty.scale_sigma.value_or(0.0); sigma > config_.max_scale_sigma)
     return fmt::format("motion too gentle for this IMU: scale known to {:.0f} %, {:.0f} % required",
-                       100.0 * std::min(*scale_sigma, 9.99), 100.0 * config_.max_scale_sigma);
+                       100.0 * std::min(sigma, 9.99), 100.0 * config_.max_scale_sigma);
   return "";
 }
 
@@ -80,7 +86,7 @@ TrackingStatus StatusMonitor::update(const EstimatorResult& result, const Uncert
   if (vision_lost_)
     reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);
   if (!reason_.empty()) return TrackingStatus::Lost;
-  reason_ = doubt(result, uncertainty.scale_sigma);
+  reason_ = doubt(result, uncertainty);
   return reason_.empty() ? TrackingStatus::Good : TrackingStatus::Degraded;
 }
 

@@ -18,6 +18,7 @@ namespace edged {
 struct Uncertainty {
   double bias_change = 0.0;                ///< of the IMU, see BiasHistory [sigma]
   std::optional<double> scale_sigma = {};  ///< relative, see ScaleUncertainty
+  double velocity_sigma = 0.0;             ///< of the worst axis, beyond what the speed allows [m/s]
 };
 
 /// Determines the tracking status from the estimator's results, packet by packet. Each loss by IMU strain raises its
@@ -46,7 +47,7 @@ class StatusMonitor {
 
  private:
   std::string contradiction(double imu_strain, double bias_change);
-  std::string doubt(const EstimatorResult& result, const std::optional<double>& scale_sigma) const;
+  std::string doubt(const EstimatorResult& result, const Uncertainty& uncertainty) const;
 
   StatusConfig config_;
   bool ever_started_ = false, ever_localized_ = false;

@@ -75,6 +75,13 @@ TEST(StatusMonitor, DoubtsAScaleThatTheMotionDoesNotTell) {
   EXPECT_EQ(monitor.reason(), "");
 }
 
+TEST(StatusMonitor, DoubtsAVelocityThatIsNotKnown) {
+  StatusMonitor monitor({});
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 0.25}, true, at(0.0)), TrackingStatus::Good);
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 0.5}, true, at(0.1)), TrackingStatus::Degraded);
+  EXPECT_THAT(monitor.reason(), testing::HasSubstr("velocity known to 0.50 m/s"));
+}
+
 TEST(StatusMonitor, BearsMoreStrainAfterALossByIt) {
   StatusMonitor monitor({});
   EstimatorResult strained = healthy();
