@@ -43,7 +43,8 @@ const std::vector<Eigen::Vector2d>& ImageMotion::travels() {
   for (auto last = views_.rbegin(); last != views_.rend(); ++last) {
     for (const auto& [camera, points] : last->points) {
       if (!done.insert(camera).second) continue;
-      const auto first = std::ranges::find_if(views_, [&](const View& view) { return view.points.contains(camera); });
+      const auto first = std::ranges::find_if(
+          views_, [&, &camera = camera](const View& view) { return view.points.contains(camera); });
       const double span_s = to_seconds(last->t - first->t);
       if (span_s < 0.5 * window_s_) continue;
       for (const auto& [id, point] : points) {
