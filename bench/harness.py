@@ -200,12 +200,16 @@ def estimate_once(edged, recording, mode, out, settings=(), rig=None, extra=()):
     return metrics if finished else estimate(edged, recording, mode, out, settings, rig, extra)
 
 
+def state_rows(folder):
+    """The rows of states.csv, one a packet: texts by column."""
+    with open(folder / "states.csv", encoding="utf-8") as file:
+        yield from csv.DictReader(line for line in file if not line.startswith("#"))
+
+
 def read_states(folder):
     """(seconds, status, position) of every packet."""
-    with open(folder / "states.csv", encoding="utf-8") as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        return [(1e-9 * int(row["t_ns"]), row["status"],
-                 tuple(float(row[key]) for key in ("px_m", "py_m", "pz_m")) if row["px_m"] else None) for row in rows]
+    return [(1e-9 * int(row["t_ns"]), row["status"],
+             tuple(float(row[key]) for key in ("px_m", "py_m", "pz_m")) if row["px_m"] else None) for row in state_rows(folder)]
 
 
 def failure(metrics):

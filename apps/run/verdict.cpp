@@ -12,6 +12,7 @@
 #include "edged/checks/checks.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
+#include "edged/options.hpp"
 
 namespace edged {
 namespace {
@@ -75,8 +76,7 @@ void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
 
 /// A motion may be too gentle for an IMU to tell its size.
 void judge_scale(const RunStatistics& run, std::vector<Finding>& out) {
-  constexpr double kMost = 0.2;  // as status.max_scale_sigma
-  if (run.scale_sigma().value_or(0.0) > kMost)
+  if (run.scale_sigma().value_or(0.0) > StatusConfig{}.max_scale_sigma)
     out.push_back({Severity::Error,
                    fmt::format("scale: known to {:.0f} %, as the motion is too gentle for this IMU: distances may be "
                                "off by that share",

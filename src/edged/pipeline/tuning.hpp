@@ -58,8 +58,8 @@ struct PipelineTuning {
   double gyro_drift = 2e-3;      ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
   double accel_drift = 0.02;     ///< drift of the accelerometer's bias [m/s^2]
   double scale_memory_s = 10.0;  ///< of motion, by which the scale is judged
-  double velocity_share = 0.1;   ///< of the speed: so uncertain may the velocity be as well
   double least_travel_m = 0.15;  ///< of a shorter way the share does not matter: a fifth of it is 3 cm
+  double velocity_share = 0.1;   ///< of the speed: so uncertain may the velocity be as well
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

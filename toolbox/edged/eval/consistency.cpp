@@ -71,13 +71,13 @@ class Sum {
   Normalized add(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, double least_sigma = kLeastSigma) {
     const Eigen::Matrix3d P = covariance + least_sigma * least_sigma * Eigen::Matrix3d::Identity();
     const double nees = error.dot(P.ldlt().solve(error));
-    const Eigen::Array3d sigmas = error.array().abs() / P.diagonal().array().sqrt();
+    const Eigen::Array<bool, 3, 1> within = error.array().abs() <= 3.0 * P.diagonal().array().sqrt();
     ++count_;
     nees_ += nees;
     max_nees_ = std::max(max_nees_, nees);
     within_ += nees <= kChiSquare ? 1.0 : 0.0;
-    axes_within_ += (sigmas <= 3.0).cast<double>().matrix();
-    return {nees, (sigmas <= 3.0).all()};
+    axes_within_ += within.cast<double>().matrix();
+    return {nees, within.all()};
   }
 
   NormalizedErrors mean() const {
