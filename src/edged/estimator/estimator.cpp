@@ -71,11 +71,6 @@ std::vector<CameraObservations> inflate_during_gyro_saturation(std::vector<Camer
   return observations;
 }
 
-Vibration vibration_of(const ImuNoise& in_use, const ImuNoise& calibrated) {
-  return {std::sqrt(square(in_use.gyro_noise) - square(calibrated.gyro_noise)),
-          std::sqrt(square(in_use.accel_noise) - square(calibrated.accel_noise))};
-}
-
 /// Factor on covariances.
 double inflation(const Window& window, const EstimatorConfig& config) {
   const double sigmas = config.sigma_inflation * (sees_frames(window) ? 1.0 : kEstimatorTuning.events_alone_inflation);
@@ -86,10 +81,9 @@ double inflation(const Window& window, const EstimatorConfig& config) {
 
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
                      std::vector<IntrinsicsCorrection> intrinsics, const std::optional<BiasPrior>& biases)
-    : noise_(noise),
-      config_(config),
+    : config_(config),
       window_(rig, {0.0, 0.0}, config.depth_factor),
-      standstill_(config.standstill),
+      standstill_(config.standstill, noise),
       external_(config.height, config.velocity),
       initializer_(rig, noise, config, biases),
       known_intrinsics_(std::move(intrinsics)),
@@ -97,9 +91,10 @@ Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfi
 
 EstimatorResult Estimator::add(const EstimatorInput& input) {
   EstimatorResult result;
-  standstill_.set_vibration(vibration_of(input.motion.noise(), noise_));
+  standstill_.set_noise(input.motion.noise());
   standstill_.add(input.motion.samples(), input.observations, input.events_quiet, gyro_bias(),
                   [&] { return known_motion(input); });
+  result.noise_at_rest = standstill_.noise_at_rest();
   const std::optional<double> turning = turning_in_place(input);
   result.standstill = standstill_.still() || stationary_by_vision() || turning;
   if (start(input, result) || !initialized_) return result;

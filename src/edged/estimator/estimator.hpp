@@ -29,10 +29,11 @@ struct EstimatorResult {
   double imu_strain = 0.0;          ///< see imu_strain() [sigma]
   std::vector<MarginalizedKeyframe> marginalized_keyframes;  ///< with this input
   bool standstill = false;
-  bool velocity_observed = false;  ///< the velocity was measured recently, by an external sensor
-  bool new_frame = false;          ///< the estimator has started (again) with this input, in a frame of its own
-  bool provisional = false;        ///< the scale is not certain enough yet
-  bool plausible = true;           ///< false: the solution has diverged (not finite, or implausible biases or speed)
+  std::optional<ImuNoise> noise_at_rest;  ///< measured in this rest
+  bool velocity_observed = false;         ///< the velocity was measured recently, by an external sensor
+  bool new_frame = false;                 ///< the estimator has started (again) with this input, in a frame of its own
+  bool provisional = false;               ///< the scale is not certain enough yet
+  bool plausible = true;  ///< false: the solution has diverged (not finite, or implausible biases or speed)
 };
 
 class Estimator {
@@ -82,7 +83,6 @@ class Estimator {
   void adapt_noise(double imu_strain);
   std::vector<MarginalizedKeyframe> slide();
 
-  ImuNoise noise_;
   EstimatorConfig config_;
   Window window_;
   StandstillDetector standstill_;

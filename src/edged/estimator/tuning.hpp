@@ -80,8 +80,8 @@ struct StandstillTuning {
   double contradicted = 2.0;   ///< times max_image_motion: an estimate that moves the image by more would show in it
   double usual_depth_m = 1.5;  ///< of the scene, where no landmark tells it
   double unfelt_speed = 0.2;   ///< [m/s] of gentle motion, whose accelerations a quiet IMU hides
-  double shaking = 6.0;        ///< times the spreads of a calm IMU: engines, a table that is knocked
-  Duration min_shaking = std::chrono::milliseconds(500);  ///< a body that starts to move has moved the image by then
+  Duration min_shaking = std::chrono::milliseconds(500);     ///< a body that starts to move has moved the image by then
+  Duration noise_interval = std::chrono::milliseconds(200);  ///< between measurements of the noise at rest
 };
 inline constexpr StandstillTuning kStandstillTuning{};
 
@@ -111,7 +111,8 @@ struct InitializationTuning {
   double zero_velocity_sigma = 0.01;                    ///< [m/s] of a body at rest
   double rest_gyro_bias_sigma = 0.005;                  ///< [rad/s] where the rest has measured the bias
   double rest_accel_sigma = 0.03;      ///< [m/s^2] of the mean acceleration at rest: a calm IMU may still move a little
-  double max_gravity_error = 1.0;      ///< [m/s^2] of that mean: beyond it the unit is wrong
+  double max_gravity_error = 1.0;      ///< [m/s^2] of that mean: beyond it the unit is wrong, ...
+  double gravity_sigmas = 3.5;         ///< ... if vibration does not explain it
   double gyro_bias_sigma = 0.02;       ///< [rad/s] after a start in motion, around the bias that the alignment finds
   double pair_gyro_bias_sigma = 0.05;  ///< [rad/s] around zero where cameras share features: in so short a time the
                                        ///< alignment takes slow motion for a bias

@@ -26,14 +26,19 @@ std::vector<Eigen::Vector3d> means_of(const std::vector<Eigen::Vector3d>& readin
   return means;
 }
 
-/// Standard deviation of their third differences; 0 with too few. Knocks leave the median as it is.
+/// Standard deviation of an axis, by the squared norms of differences. Knocks leave the median as it is.
+double deviation(std::vector<double> squared_norms) {
+  constexpr double kMedianOfChiSquare = 2.366;  // of three axes
+  return std::sqrt(median(std::move(squared_norms)) / kMedianOfChiSquare);
+}
+
+/// Standard deviation of their third differences; 0 with too few.
 double third_difference(const std::vector<Eigen::Vector3d>& means) {
   if (means.size() < kImuNoiseTuning.min_blocks) return 0.0;
   std::vector<double> squares;
   for (std::size_t i = 3; i < means.size(); ++i)
     squares.push_back((means[i] - 3.0 * means[i - 1] + 3.0 * means[i - 2] - means[i - 3]).squaredNorm());
-  constexpr double kMedianOfChiSquare = 2.366;  // of three axes
-  return std::sqrt(median(std::move(squares)) / kMedianOfChiSquare);
+  return deviation(std::move(squares));
 }
 
 /// The density in use, at least the calibrated one. For white noise the variance of the third difference is 20 times
@@ -56,7 +61,33 @@ double density(const std::deque<ImuSample>& samples, Reading reading, double spa
   return found > kImuNoiseTuning.significant * calibrated ? found : calibrated;
 }
 
+/// The largest density that Allan deviations show, if it is significant. For white noise the variance of the difference
+/// of two means is twice that of a mean.
+double density_at_rest(std::span<const ImuSample> imu, Reading reading, double calibrated) {
+  std::vector<Eigen::Vector3d> readings;
+  for (const ImuSample& sample : imu) readings.push_back(sample.*reading);
+  const double spacing_s = to_seconds(imu.back().t - imu.front().t) / static_cast<double>(imu.size() - 1);
+  double found = 0.0;
+  for (const double block_s : kImuNoiseTuning.rest_blocks_s) {
+    const auto block = static_cast<std::size_t>(std::max(1.0, std::round(block_s / spacing_s)));
+    if (kImuNoiseTuning.min_rest_blocks * block > readings.size()) break;
+    const std::vector<Eigen::Vector3d> means = means_of(readings, block, 1);
+    std::vector<double> squares;
+    for (std::size_t i = block; i < means.size(); ++i) squares.push_back((means[i] - means[i - block]).squaredNorm());
+    found = std::max(found, deviation(std::move(squares)) * std::sqrt(0.5 * static_cast<double>(block) * spacing_s));
+  }
+  return found > kImuNoiseTuning.significant_at_rest * calibrated ? found : calibrated;
+}
+
 }  // namespace
+
+ImuNoise noise_at_rest(std::span<const ImuSample> imu, const ImuNoise& calibrated) {
+  ImuNoise noise = calibrated;
+  if (imu.size() < 2) return noise;
+  noise.gyro_noise = density_at_rest(imu, &ImuSample::gyro_B, calibrated.gyro_noise);
+  noise.accel_noise = density_at_rest(imu, &ImuSample::accel_B, calibrated.accel_noise);
+  return noise;
+}
 
 const ImuNoise& ImuNoiseEstimator::add(const std::vector<ImuSample>& imu) {
   for (std::size_t i = 1; i + 1 < imu.size(); ++i) {
@@ -65,13 +96,30 @@ const ImuNoise& ImuNoiseEstimator::add(const std::vector<ImuSample>& imu) {
       samples_.clear();
     if (!sample.interpolated) samples_.push_back(sample);
   }
-  if (samples_.size() < 2) return noise_ = calibrated_;
+  if (samples_.size() < 2) return noise_ = least_;
   while (samples_.back().t - samples_.front().t > kImuNoiseTuning.window) samples_.pop_front();
   const double spacing_s =
       to_seconds(samples_.back().t - samples_.front().t) / static_cast<double>(samples_.size() - 1);
-  noise_.gyro_noise = density(samples_, &ImuSample::gyro_B, spacing_s, calibrated_.gyro_noise);
-  noise_.accel_noise = density(samples_, &ImuSample::accel_B, spacing_s, calibrated_.accel_noise);
+  const double gyro = density(samples_, &ImuSample::gyro_B, spacing_s, calibrated_.gyro_noise);
+  const double accel = density(samples_, &ImuSample::accel_B, spacing_s, calibrated_.accel_noise);
+  const double grown = growth(accel);
+  noise_.gyro_noise = std::max(least_.gyro_noise, grown * gyro);
+  noise_.accel_noise = std::max(least_.accel_noise, grown * accel);
   return noise_;
+}
+
+void ImuNoiseEstimator::add_correction(Timestamp t, const Eigen::Vector3d& dv, double dt_s) {
+  corrections_.push_back({t, dv.squaredNorm() / dt_s});
+  while (t - corrections_.front().t > kImuNoiseTuning.window) corrections_.pop_front();
+}
+
+/// How many times the noise that the readings show the corrections tell. A vibration has one spectrum in both sensors.
+double ImuNoiseEstimator::growth(double accel_noise) const {
+  if (accel_noise == calibrated_.accel_noise || corrections_.size() < kImuNoiseTuning.min_corrections) return 1.0;
+  std::vector<double> squares;
+  for (const Correction& correction : corrections_) squares.push_back(correction.per_s);
+  const double grown = deviation(std::move(squares)) / accel_noise;
+  return grown > kImuNoiseTuning.significant ? std::min(grown, kImuNoiseTuning.max_growth) : 1.0;
 }
 
 }  // namespace edged

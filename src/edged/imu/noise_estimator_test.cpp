@@ -98,5 +98,63 @@ TEST(ImuNoiseEstimator, ForgetsMotorsAKnockAndGaps) {
   EXPECT_EQ(estimator.add(imu.packet()).gyro_noise, kCalibrated.gyro_noise) << "too few samples to tell";
 }
 
+/// All samples so far of an IMU.
+std::vector<ImuSample> samples_of(Imu imu, double duration_s) {
+  std::vector<ImuSample> samples;
+  for (double s = 0.0; s < duration_s; s += kPacket_s) {
+    const std::vector<ImuSample> packet = imu.packet();
+    samples.insert(samples.end(), packet.begin() + 1, packet.end() - 1);
+  }
+  return samples;
+}
+
+TEST(NoiseAtRest, IsTheCalibratedOneWhereThatIsRight) {
+  for (const double rate_hz : {100.0, 200.0, 1000.0}) {
+    const ImuNoise found = noise_at_rest(samples_of({.rate_hz = rate_hz}, 1.0), kCalibrated);
+    EXPECT_EQ(found.gyro_noise, kCalibrated.gyro_noise) << rate_hz;
+    EXPECT_EQ(found.accel_noise, kCalibrated.accel_noise) << rate_hz;
+  }
+}
+
+TEST(NoiseAtRest, FindsWhiteNoiseAndSlowOscillations) {
+  const ImuNoise white = noise_at_rest(samples_of({.rate_hz = 200.0, .gyro_noise = 2e-3}, 2.0), kCalibrated);
+  EXPECT_NEAR(white.gyro_noise, 2e-3, 0.8e-3);
+  Imu imu{.rate_hz = 100.0};
+  imu.accel = [](double t) { return Vector3d(std::sin(20.0 * t), std::cos(20.0 * t), 9.81 + std::sin(17.0 * t)); };
+  EXPECT_GT(noise_at_rest(samples_of(imu, 1.0), kCalibrated).accel_noise, 0.1);
+  EXPECT_EQ(found_after(imu, 3.0).accel_noise, kCalibrated.accel_noise) << "in flight that may be motion";
+}
+
+TEST(NoiseAtRest, HoldsUntilTheNextRest) {
+  Imu imu;
+  ImuNoiseEstimator estimator(kCalibrated);
+  estimator.set_least({.gyro_noise = 0.02, .accel_noise = 0.3});
+  EXPECT_EQ(estimator.add(imu.packet()).accel_noise, 0.3);
+  estimator.set_least(kCalibrated);
+  EXPECT_EQ(estimator.add(imu.packet()).accel_noise, kCalibrated.accel_noise);
+}
+
+/// The noise after two seconds in which each update has changed the velocity by so much.
+ImuNoise found_with_corrections(double accel_noise, double dv) {
+  Imu imu{.gyro_noise = 10.0 * kCalibrated.gyro_noise, .accel_noise = accel_noise};
+  ImuNoiseEstimator estimator(kCalibrated);
+  ImuNoise found;
+  for (int i = 0; i < 40; ++i) {
+    found = estimator.add(imu.packet());
+    estimator.add_correction(timestamp_from_seconds(imu.t), Vector3d(dv, -dv, dv), kPacket_s);
+  }
+  return found;
+}
+
+TEST(ImuNoiseEstimator, GrowsWithTheChangesOfTheVelocityWhereTheImuShakes) {
+  const double shaking = 0.05, as_expected = shaking * std::sqrt(kPacket_s);
+  EXPECT_NEAR(found_with_corrections(shaking, as_expected).accel_noise, shaking, 0.02);
+  const ImuNoise grown = found_with_corrections(shaking, 4.0 * as_expected);
+  EXPECT_NEAR(grown.accel_noise, 4.0 * shaking, 1.2 * shaking);
+  EXPECT_NEAR(grown.gyro_noise, 40.0 * kCalibrated.gyro_noise, 16.0 * kCalibrated.gyro_noise);
+  EXPECT_EQ(found_with_corrections(kCalibrated.accel_noise, 0.1).accel_noise, kCalibrated.accel_noise)
+      << "dynamic objects change it, too";
+}
+
 }  // namespace
 }  // namespace edged

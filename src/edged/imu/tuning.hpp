@@ -4,6 +4,7 @@
 // brackets names the decision page (docs/decisions).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "edged/time.hpp"
@@ -28,6 +29,11 @@ struct ImuNoiseTuning {
   double long_block_s = 0.025;                          ///< [s] near the interval between states
   std::size_t min_blocks = 9;                           ///< six third differences
   double significant = 1.5;                             ///< times the calibrated density: less is its own scatter
+  std::size_t min_corrections = 8;                      ///< of the velocity within the window
+  double max_growth = 10.0;                             ///< of the noise by them: motors vary by some Hz
+  std::array<double, 3> rest_blocks_s = {0.05, 0.1, 0.2};  ///< [s] of means at rest: the intervals between states
+  std::size_t min_rest_blocks = 4;                         ///< in a rest, else such means are too few
+  double significant_at_rest = 2.0;                        ///< as above, of the largest of three
 };
 inline constexpr ImuNoiseTuning kImuNoiseTuning{};
 

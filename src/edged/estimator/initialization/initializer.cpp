@@ -98,9 +98,10 @@ InitializationResult Initializer::add(const EstimatorInput& input, const Standst
                                       double most_scale_sigma, const OdomState* running) {
   noise_ = input.motion.noise();
   const bool new_view = buffer_view(input);
-  if (rest.at_rest()) {
+  if (rest.still()) {
     const double gravity = rest.mean_accel_B().norm();
-    if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error) {
+    const double by_vibration = kInitializationTuning.gravity_sigmas * rest.mean_accel_sigma(rest.mean_duration_s());
+    if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error + by_vibration) {
       return {{}, fmt::format("an accelerometer in m/s^2: it measures {:.2f} of 9.81 at rest", gravity)};
     }
     return {StartWindow{start_at_rest(input, rest)}};
@@ -181,11 +182,11 @@ Window Initializer::start_at_rest(const EstimatorInput& input, const StandstillD
                                     kInitializationTuning.gauge_sigma_rad));
   window.add_soft_prior(rest_prior(
       pose, first.pose, motion, first.motion, standstill.mean_accel_B(),
-      std::hypot(kInitializationTuning.rest_accel_sigma, standstill.mean_accel_sigma(config_.standstill.window_s))));
+      std::hypot(kInitializationTuning.rest_accel_sigma, standstill.mean_accel_sigma(standstill.mean_duration_s()))));
   window.add_soft_prior(motion_prior(
       motion, motion_block(state),
       {kInitializationTuning.zero_velocity_sigma,
-       std::hypot(kInitializationTuning.rest_gyro_bias_sigma, standstill.mean_gyro_sigma(config_.standstill.window_s)),
+       std::hypot(kInitializationTuning.rest_gyro_bias_sigma, standstill.mean_gyro_sigma(standstill.mean_duration_s())),
        prior.accel_sigma}));
   solve(window, kInitializationTuning.refine_iterations);  // the accelerometer's bias along gravity
   return window;

@@ -10,6 +10,7 @@
 
 #include "edged/core/statistics.hpp"
 #include "edged/estimator/tuning.hpp"
+#include "edged/imu/noise_estimator.hpp"
 
 namespace edged {
 namespace {
@@ -34,30 +35,42 @@ void StandstillConfig::visit(ConfigFields& fields) {
 }
 
 void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vector<CameraObservations>& observations,
-                             bool events_quiet, const Eigen::Vector3d& bias_gyro,
-                             const std::function<std::optional<KnownMotion>()>& motion) {
+                             bool events_quiet, const Eigen::Vector3d& bias_gyro, const MotionSource& motion) {
   if (imu.empty()) return;
   buffer(imu, observations, events_quiet);
   const Spread spread = spread_over(config_.window_s);
-  still_ = quiet_ = image_static_ = shaken_ = false;
+  still_ = quiet_ = image_static_ = false;
+  bias_gyro_ = bias_gyro;
   const bool gap = has_gap(imu_, imu_.back().t - duration_from_seconds(kStandstillTuning.quiet_window_s));
   if (gap || !imu_calm(spread)) {
-    const std::string why = gap ? "IMU samples are missing" : reason_;
-    const bool stands = gap ? image_still() : only_shakes(spread);
-    reason_ = why;
-    if (!stands) return shakes_since_.reset();
-    if (!shakes_since_) shakes_since_ = imu_.back().t;
-    image_static_ = imu_.back().t - *shakes_since_ >= kStandstillTuning.min_shaking;
-    shaken_ = image_static_ && !gap;
-    return;
+    judge_shaking(spread, gap, motion);
+  } else {
+    judge_calm(motion);
   }
-  shakes_since_.reset();
-  if (image_turns(mean_gyro_ - bias_gyro)) {
-    reason_ = fmt::format("turning steadily: {:.3f} rad/s", (mean_gyro_ - bias_gyro).norm());
+  measure_rest();
+}
+
+/// Still images suffice after a while, by which a body that starts to move has moved them.
+void StandstillDetector::judge_shaking(const Spread& spread, bool gap, const MotionSource& motion) {
+  const std::string why = gap ? "IMU samples are missing" : reason_;
+  const bool stands = gap ? image_still() : only_shakes(spread);
+  reason_ = why;
+  if (!stands) return shakes_since_.reset();
+  if (!shakes_since_) shakes_since_ = imu_.back().t;
+  image_static_ = imu_.back().t - *shakes_since_ >= kStandstillTuning.min_shaking;
+  if (!image_static_ || gap) return;
+  const std::optional<KnownMotion> known = motion();
+  still_ = !known || !hidden_from_image(*known);
+  reason_ = still_ ? "" : why;
+}
+
+void StandstillDetector::judge_calm(const MotionSource& motion) {
+  if (!vibrates()) shakes_since_.reset();
+  if (image_turns()) {
+    reason_ = fmt::format("turning steadily: {:.3f} rad/s", rate());
     return;
   }
   quiet_ = imu_quiet(kStandstillTuning.quiet_window_s * (image_.glides() ? kStandstillTuning.glide_stretch : 1.0));
-  rate_ = (mean_gyro_ - bias_gyro).norm();
   const bool still = image_still();
   if (!still && !quiet_) return;
   const std::optional<KnownMotion> known = motion();
@@ -67,6 +80,39 @@ void StandstillDetector::add(const std::vector<ImuSample>& imu, const std::vecto
   } else {
     quiet_ = false;
   }
+}
+
+/// The IMU shakes more than at its calibration.
+bool StandstillDetector::vibrates() const { return mean_gyro_sigma(1.0) > 0.0 || mean_accel_sigma(1.0) > 0.0; }
+
+/// Once a rest has lasted for a while all that the IMU shows is noise.
+void StandstillDetector::measure_rest() {
+  if (!still_) {
+    rests_since_.reset(), measured_at_.reset(), noise_at_rest_.reset();
+    return;
+  }
+  const Timestamp now = imu_.back().t;
+  const Duration window = duration_from_seconds(config_.window_s);
+  if (!rests_since_) rests_since_ = std::min(now, shakes_since_.value_or(now)) - window;
+  if (now - *rests_since_ < kStandstillTuning.min_shaking + window) return;
+  if (vibrates()) take_means(spread_over(to_seconds(now - *rests_since_)));
+  if (measured_at_ && now - *measured_at_ < kStandstillTuning.noise_interval) return;
+  measured_at_ = now;
+  const auto first = std::ranges::find_if(imu_, [&](const ImuSample& sample) { return sample.t >= *rests_since_; });
+  noise_at_rest_ = edged::noise_at_rest(std::vector<ImuSample>(first, imu_.end()), calibrated_);
+  noise_.gyro_noise = std::max(noise_.gyro_noise, noise_at_rest_->gyro_noise);
+  noise_.accel_noise = std::max(noise_.accel_noise, noise_at_rest_->accel_noise);
+}
+
+void StandstillDetector::take_means(const Spread& spread) {
+  mean_gyro_ = spread.mean_gyro;
+  mean_accel_ = spread.mean_accel;
+  mean_duration_s_ = spread.covered_s;
+}
+
+/// Density beyond the calibrated one.
+double StandstillDetector::vibration(double ImuNoise::*density) const {
+  return std::sqrt(std::max(0.0, square(noise_.*density) - square(calibrated_.*density)));
 }
 
 /// Keeps one sample at or before the window's begin, so that the window is covered.
@@ -112,25 +158,26 @@ StandstillDetector::Spread StandstillDetector::spread_over(double window_s) cons
 }
 
 double StandstillDetector::max_gyro_spread() const {
-  return config_.max_gyro + kStandstillTuning.block_spread * vibration_.gyro_noise /
-                                std::sqrt(config_.window_s / kStandstillTuning.blocks);
+  return config_.max_gyro +
+         kStandstillTuning.block_spread * mean_gyro_sigma(config_.window_s / kStandstillTuning.blocks);
 }
 
 double StandstillDetector::max_accel_spread() const {
-  return config_.max_accel + kStandstillTuning.block_spread * vibration_.accel_noise /
-                                 std::sqrt(config_.window_s / kStandstillTuning.blocks);
+  return config_.max_accel +
+         kStandstillTuning.block_spread * mean_accel_sigma(config_.window_s / kStandstillTuning.blocks);
 }
 
 bool StandstillDetector::imu_calm(const Spread& spread) {
-  mean_gyro_ = spread.mean_gyro;
-  mean_accel_ = spread.mean_accel;
+  take_means(spread);
+  const double max_mean =
+      kStandstillTuning.max_gyro_mean + kStandstillTuning.moving_sigma * mean_gyro_sigma(config_.window_s);
   if (spread.covered_s < kStandstillTuning.min_cover * config_.window_s) {
     reason_ = fmt::format("{:.2f} of {:.2f} s of IMU", spread.covered_s, config_.window_s);
     return false;
   }
-  if (spread.gyro > max_gyro_spread() || mean_gyro_.norm() > kStandstillTuning.max_gyro_mean) {
+  if (spread.gyro > max_gyro_spread() || mean_gyro_.norm() > max_mean) {
     reason_ = fmt::format("turning: gyro spread {:.3f} of {:.3f} rad/s, mean {:.3f} of {:.3f} rad/s", spread.gyro,
-                          max_gyro_spread(), mean_gyro_.norm(), kStandstillTuning.max_gyro_mean);
+                          max_gyro_spread(), mean_gyro_.norm(), max_mean);
     return false;
   }
   if (spread.accel > max_accel_spread()) {
@@ -146,14 +193,13 @@ bool StandstillDetector::imu_quiet(double window_s) {
       spread.accel > kStandstillTuning.quiet_accel) {
     return false;
   }
-  mean_gyro_ = spread.mean_gyro;
-  mean_accel_ = spread.mean_accel;
+  take_means(spread);
   return true;
 }
 
-/// True if the image moves as in a rotation of this rate, which the IMU alone cannot distinguish from a bias.
-bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) {
-  const double turned = rate.norm() * config_.window_s;
+/// True if the image moves as in a rotation of the mean rate, which the IMU alone cannot distinguish from a bias.
+bool StandstillDetector::image_turns() {
+  const double turned = rate() * config_.window_s;
   if (turned < kStandstillTuning.min_turn * kStandstillTuning.max_image_motion) return false;
   const std::optional<double> travel = image_.median_travel();
   return travel && *travel > kStandstillTuning.turn_share * turned;
@@ -163,16 +209,16 @@ bool StandstillDetector::image_turns(const Eigen::Vector3d& rate) {
 bool StandstillDetector::moves(const KnownMotion& motion) {
   const double most_speed = kStandstillTuning.moving_sigma * motion.speed_sigma,
                most_rate = kStandstillTuning.moving_sigma * motion.rate_sigma;
-  if (motion.speed <= most_speed && rate_ <= most_rate) return false;
+  if (motion.speed <= most_speed && rate() <= most_rate) return false;
   reason_ = fmt::format("moving at {:.3f} of {:.3f} m/s, turning at {:.4f} of {:.4f} rad/s", motion.speed, most_speed,
-                        rate_, most_rate);
+                        rate(), most_rate);
   return true;
 }
 
 /// Whether the body moves so slowly or so far from the scene that still images do not contradict it.
 bool StandstillDetector::hidden_from_image(const KnownMotion& motion) {
   const double depth_m = motion.depth_m.value_or(kStandstillTuning.usual_depth_m);
-  const double travel = config_.window_s * (motion.speed / depth_m + rate_);
+  const double travel = config_.window_s * (motion.speed / depth_m + rate());
   return moves(motion) && travel < kStandstillTuning.contradicted * kStandstillTuning.max_image_motion;
 }
 
@@ -193,11 +239,11 @@ bool StandstillDetector::explains_image(const std::optional<KnownMotion>& motion
   return *travel < allowed;
 }
 
+/// Whether the images stand still whatever the IMU shows, as long as its mean rate is a bias, or by chance.
 bool StandstillDetector::only_shakes(const Spread& spread) {
   return spread.covered_s >= kStandstillTuning.min_cover * config_.window_s &&
-         spread.gyro < kStandstillTuning.shaking * config_.max_gyro &&
-         spread.mean_gyro.norm() < kStandstillTuning.max_gyro_mean &&
-         spread.accel < kStandstillTuning.shaking * config_.max_accel && image_.median_travel() && image_still();
+         spread.mean_gyro.norm() < kStandstillTuning.max_gyro_mean + spread.gyro && image_.median_travel() &&
+         image_still();
 }
 
 bool StandstillDetector::image_still() {

@@ -25,6 +25,7 @@ Preintegration ImuPropagator::predict(std::vector<ImuSample> imu, bool started) 
   gyro_was_saturated_ = gyro_saturated_ && !motion.gyro_clipped();
   gyro_saturated_ = motion.gyro_clipped();
   started_ = started;
+  predicted_s_ = started && motion.gyro_trusted() ? motion.dt() : 0.0;
   bridged_s_ = bridged ? motion.dt() : 0.0;
   std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
@@ -51,10 +52,12 @@ SE3 ImuPropagator::extrapolate(Duration time) const {
   return {now_.T_O_B.rotation() * so3::exp(omega_B_ * s), now_.T_O_B.translation() + now_.v_O * s};
 }
 
-SE3 ImuPropagator::correct(const OdomState& estimate, bool new_frame) {
+SE3 ImuPropagator::correct(const OdomState& estimate, bool new_frame, bool standstill) {
   SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
   if (bridged_s_ > 0.0 && !new_frame)  // only the cameras measure the rate
     omega_B_ += so3::log(now_.T_O_B.rotation().conjugate() * estimate.T_O_B.rotation()) / bridged_s_;
+  if (!new_frame && !standstill && predicted_s_ > 0.0)
+    noise_.add_correction(now_.t, estimate.v_O - now_.v_O, predicted_s_);
   now_ = estimate;
   for (StampedPose& pose : T_O_B_) pose.T = correction * pose.T;
   return correction;

@@ -22,9 +22,12 @@ class ImuPropagator {
   /// else attitude by gyro only.
   Preintegration predict(std::vector<ImuSample> imu, bool started);
 
+  /// The noise of the IMU is no less until the next rest.
+  void set_noise_at_rest(const ImuNoise& noise) { noise_.set_least(noise); }
+
   /// Sets `now` to the estimate and transforms the history. Returns T_new_old, from the old odometry frame to the new
   /// one. new_frame: the frames are unrelated, so the two estimates do not measure a rotation.
-  SE3 correct(const OdomState& estimate, bool new_frame = false);
+  SE3 correct(const OdomState& estimate, bool new_frame = false, bool standstill = false);
 
   const OdomState& now() const { return now_; }
   /// Whether speed and tilt of `now` are estimated.
@@ -44,6 +47,7 @@ class ImuPropagator {
   OdomState now_;
   bool started_ = false;
   bool gyro_saturated_ = false, gyro_was_saturated_ = false;  ///< in the last prediction; in the one before alone
+  double predicted_s_ = 0.0;                           ///< duration of the last prediction by trusted samples, else 0
   double bridged_s_ = 0.0;                             ///< duration of the last prediction if it bridged a gap, else 0
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;

@@ -134,9 +134,10 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   const auto timer = timings_->measure("estimate");
   EstimatorResult result = session_.estimator.add(input);
   correction.outliers = result.outliers;
+  if (result.noise_at_rest) body_.set_noise_at_rest(*result.noise_at_rest);
   if (!session_.estimator.initialized()) return result;
   attitude_.reset();
-  const SE3 T_new_old = body_.correct(session_.estimator.newest(), result.new_frame);
+  const SE3 T_new_old = body_.correct(session_.estimator.newest(), result.new_frame, result.standstill);
   if (result.new_frame) correction.T_new_old = T_new_old;
   calibration_.update(session_.estimator.window());
   correction.cameras = calibration_.cameras();
