@@ -29,8 +29,9 @@ struct MapOptions {
 template <typename Read>
 auto read_map_file(const std::filesystem::path& file, Read read) {
   std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file, ignored))
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, ignored)) in.open(file, std::ios::binary);  // a pipe would be waited for
+  if (!in.is_open())
     throw InputError::format("{}: not a readable map; `edged run RECORDING --save-map FILE` makes one", file.string());
   const std::string bytes(std::istreambuf_iterator<char>(in), {});
   try {

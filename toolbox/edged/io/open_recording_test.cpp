@@ -4,6 +4,7 @@
 #include "edged/io/open_recording.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <zlib.h>
 
@@ -240,6 +241,16 @@ TEST(Recording, UnknownFoldersAreRefusedWithWhatWasLookedFor) {
               ::testing::AllOf(HasSubstr("events.txt"), HasSubstr("cam0/data.csv")));
   EXPECT_THAT(input_error([&] { open_recording(folder.path() / "none"); }), HasSubstr("no such file or folder"));
   EXPECT_THAT(input_error([&] { open_recording(folder.write("a.bag", "x")); }), HasSubstr("give the folder"));
+}
+
+TEST(Recording, APipeIsRefusedAndNotWaitedFor) {
+  TempFolder folder;
+  for (const char* name : {"a.raw", "b.bag", "c.txt", "d.h5"}) {
+    const auto pipe = folder.path() / name;
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THAT(input_error([&] { open_recording(pipe); }), HasSubstr("no file but a pipe"));
+  }
+  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("no recording found"));
 }
 
 TEST(Recording, SensorSizeComesFromTheRigElseTheImagesElseTheDavis) {

@@ -65,36 +65,18 @@ class Aedat4File final : public Aedat4Dataset, private RecordFile {
     repairs_.add("file: no table", fmt::format("{}: the table at its end {}; read without it", name_, damage.what()));
   }
 
-  std::optional<RecordPlace> packet_at(ByteSpan head, std::uint64_t at) const {
-    if (head.size() < kPacketHeadBytes) return std::nullopt;
-    const Aedat4PacketHead packet = parse_packet_head(head, header_.streams);
-    if (!packet.stream) return std::nullopt;
-    const RecordPlace place{at, at + kPacketHeadBytes, static_cast<std::uint64_t>(packet.bytes),
-                            static_cast<std::uint32_t>(*packet.stream)};
-    return place.end() <= end() ? std::optional(place) : std::nullopt;
-  }
-
   RecordPlace locate(std::uint64_t at) override {
-    const auto packet = packet_at(file().read(at, kPacketHeadBytes), at);
-    if (!packet) throw Damage("no whole packet");
-    return *packet;
+    const Aedat4PacketHead packet = parse_packet_head(file().read(at, kPacketHeadBytes), header_.streams);
+    const std::uint64_t data = at + kPacketHeadBytes, bytes = static_cast<std::uint64_t>(packet.bytes);
+    if (!packet.stream || data + bytes > end()) throw Damage("no whole packet");
+    return {at, data, bytes, static_cast<std::uint32_t>(*packet.stream)};
   }
 
   /// The body of a packet begins with the magic bytes of the compression or with a FlatBuffers header.
-  std::optional<std::uint64_t> search(std::uint64_t from) override {
-    constexpr std::size_t kStep = 1 << 20, kLookAhead = 20;
-    for (; from < end(); from += kStep) {
-      const Bytes block = file().read(from, kStep + kLookAhead);
-      for (std::size_t i = 0; i < kStep && i + kLookAhead <= block.size(); ++i) {
-        const ByteSpan rest = ByteSpan(block).subspan(i);
-        if (begins_body(rest.subspan(kPacketHeadBytes)) && packet_at(rest, from + i)) return from + i;
-      }
-    }
-    return std::nullopt;
-  }
-
-  bool begins_body(ByteSpan body) const {
-    const std::string_view text = as_text(body);
+  bool begins_record(ByteSpan bytes) const override {
+    constexpr std::size_t kTypeEnd = 12;
+    if (bytes.size() < kPacketHeadBytes + kTypeEnd) return false;
+    const std::string_view text = as_text(bytes.subspan(kPacketHeadBytes));
     if (header_.compression == "lz4") return text.starts_with("\x04\x22\x4d\x18");
     if (header_.compression == "zstd") return text.starts_with("\x28\xb5\x2f\xfd");
     const std::string_view type = text.substr(8, 4);

@@ -9,8 +9,20 @@
 
 namespace edged {
 
-BinaryFile::BinaryFile(const std::filesystem::path& file) : file_(file, std::ios::binary | std::ios::ate) {
-  if (!file_) throw InputError::format("{}: cannot be opened for reading", file.string());
+void require_regular_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_other(file, ignored))
+    throw InputError::format("{}: is no file but a pipe or a device: write its data to a file first", file.string());
+}
+
+void refuse_shortened_file(const std::string& name) {
+  throw InputError::format("{}: was cut while it was read, or its disk fails: copy it anew", name);
+}
+
+BinaryFile::BinaryFile(const std::filesystem::path& file) : name_(file.string()) {
+  require_regular_file(file);
+  file_.open(file, std::ios::binary | std::ios::ate);
+  if (!file_) throw InputError::format("{}: cannot be opened for reading", name_);
   size_ = static_cast<std::uint64_t>(file_.tellg());
 }
 
@@ -20,7 +32,7 @@ Bytes BinaryFile::read(std::uint64_t offset, std::size_t count) {
   file_.clear();
   file_.seekg(static_cast<std::streamoff>(offset));
   file_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file_.gcount()));
+  if (static_cast<std::size_t>(file_.gcount()) < bytes.size()) refuse_shortened_file(name_);
   return bytes;
 }
 

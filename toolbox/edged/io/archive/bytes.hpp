@@ -81,6 +81,12 @@ class ByteSource {
   virtual std::size_t read(std::span<char> to) = 0;
 };
 
+/// Refuses pipes and devices, of which a reader may wait forever, by an InputError.
+void require_regular_file(const std::filesystem::path& file);
+
+/// Of a file that has become shorter since it was opened, or whose disk fails.
+[[noreturn]] void refuse_shortened_file(const std::string& name);
+
 /// A file for random access.
 class BinaryFile {
  public:
@@ -88,10 +94,12 @@ class BinaryFile {
   explicit BinaryFile(const std::filesystem::path& file);
 
   std::uint64_t size() const { return size_; }
-  /// `count` bytes from `offset` on, fewer at the end of the file.
+  /// `count` bytes from `offset` on, fewer at the end that the file had when it was opened. Throws InputError if that
+  /// is gone.
   Bytes read(std::uint64_t offset, std::size_t count);
 
  private:
+  std::string name_;
   std::ifstream file_;
   std::uint64_t size_ = 0;
 };

@@ -123,6 +123,7 @@ Decompressed decompress(std::string_view method, ByteSpan packed, std::size_t ma
 
 bool decompress_zstd_file(const std::filesystem::path& packed, const std::filesystem::path& unpacked) {
   constexpr std::size_t kPiece = 1U << 20U;
+  constexpr std::uint64_t kMostRatio = 1000;  // no recording is compressed further
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
   if (!context) throw std::bad_alloc();
   BinaryFile from(packed);
@@ -130,6 +131,7 @@ bool decompress_zstd_file(const std::filesystem::path& packed, const std::filesy
   Bytes piece(kPiece);
   std::size_t hint = 1;  // zero at the end of a frame
   for (std::uint64_t at = 0; at < from.size() && !ZSTD_isError(hint);) {
+    if (to.size() / kMostRatio > from.size()) return false;
     const Bytes in = from.read(at, kPiece);
     if (in.empty()) break;
     at += in.size();

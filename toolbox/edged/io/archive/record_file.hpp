@@ -20,6 +20,7 @@ struct RecordPlace {
   std::uint64_t data = 0;   ///< offset of its data, after the head
   std::uint64_t bytes = 0;  ///< length of the data, which may extend beyond the end of a cut file
   std::uint32_t kind = 0;   ///< a number of the format
+  bool closed = false;      ///< its content confirms its length: no other record lies within
   std::uint64_t end() const { return data + bytes; }
 };
 
@@ -36,14 +37,15 @@ class RecordFile {
 
   /// The record at an offset. Throws Damage for a head that no record has.
   virtual RecordPlace locate(std::uint64_t at) = 0;
-  /// The first record from an offset on, for formats whose records are recognised by their content.
-  virtual std::optional<std::uint64_t> search(std::uint64_t /*from*/) { return std::nullopt; }
+  /// True for bytes that begin a record which is recognised anywhere in the file, also within damage.
+  virtual bool begins_record(ByteSpan bytes) const = 0;
   /// Called for a record that cannot be located. Reading continues at `next`, if anywhere.
   virtual void count_damage(std::uint64_t at, const std::string& reason, std::optional<std::uint64_t> next) = 0;
 
-  /// The next record that can be located. After damage, that is the first one of the index behind the last good one,
-  /// whose length may be wrong; without an index, the first one that search() finds.
+  /// The next record that can be located, and that does not cover one of the index. After damage, that is the first one
+  /// of the index behind the last good one, whose length may be wrong; without an index, the first one that is found.
   std::optional<RecordPlace> next_place();
+  bool record_begins(std::uint64_t at) { return begins_record(file_.read(at, kLookAhead)); }
   void rewind() { at_ = good_ = searched_to_ = first_record_; }
 
   BinaryFile& file() { return file_; }
@@ -61,12 +63,17 @@ class RecordFile {
   std::map<std::uint64_t, std::vector<std::size_t>> index_;
 
  private:
+  static constexpr std::size_t kLookAhead = 256;  ///< bytes by which begins_record() decides
+
+  RecordPlace checked_place();
+  bool can_be_located(std::uint64_t at);
+  std::optional<std::uint64_t> search(std::uint64_t from);
   bool resynchronize(const std::string& reason);
 
   BinaryFile file_;
   std::uint64_t first_record_, end_;
-  std::uint64_t at_ = 0, good_ = 0;  ///< offset of the next record and of the last good one
-  std::uint64_t searched_to_ = 0;    ///< search() begins here
+  std::uint64_t at_ = 0, good_ = 0;  ///< offset of the next record, and of the last good one or its end
+  std::uint64_t searched_to_ = 0;    ///< search() begins here at the earliest
 };
 
 /// Bytes after their length of 32 bits, as in bags and MCAP.

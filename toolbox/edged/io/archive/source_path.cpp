@@ -22,11 +22,15 @@ class DiskSource final : public ByteSource {
   explicit DiskSource(const fs::path& file) : name_(file.string()), file_(std::fopen(name_.c_str(), "rb")) {
     if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+    std::error_code failed;
+    if (const std::uintmax_t size = fs::file_size(file, failed); !failed) left_ = size;
   }
 
   std::size_t read(std::span<char> to) override {
     const std::size_t got = std::fread(to.data(), 1, to.size(), file_.get());
     if (std::ferror(file_.get())) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
+    if (got == 0 && !to.empty() && left_ > 0) refuse_shortened_file(name_);
+    left_ -= std::min<std::uintmax_t>(got, left_);
     return got;
   }
 
@@ -37,6 +41,7 @@ class DiskSource final : public ByteSource {
 
   std::string name_;
   std::unique_ptr<std::FILE, Close> file_;
+  std::uintmax_t left_ = 0;  ///< bytes up to the end that the file had when it was opened
 };
 
 /// A gzip file, of one part or several.
@@ -44,10 +49,13 @@ class GzipSource final : public ByteSource {
  public:
   explicit GzipSource(const fs::path& file) : name_(file.string()), file_(gzopen(name_.c_str(), "rb")) {
     if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
+    left_ = most_unpacked(fs::file_size(file));
   }
 
   std::size_t read(std::span<char> to) override {
     const int got = gzread(file_.get(), to.data(), static_cast<unsigned>(to.size()));
+    if (got > 0 && static_cast<std::uint64_t>(got) > left_) throw Damage("unpacks to far more than sensors write");
+    if (got > 0) left_ -= static_cast<std::uint64_t>(got);
     if (got > 0 || (got == 0 && ended_well())) return static_cast<std::size_t>(got);
     int error = Z_OK;
     const std::string text = gzerror(file_.get(), &error);
@@ -69,9 +77,12 @@ class GzipSource final : public ByteSource {
 
   std::string name_;
   std::unique_ptr<gzFile_s, Close> file_;
+  std::uint64_t left_ = 0;  ///< bytes that may follow
 };
 
 bool is_gzip(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
   constexpr std::string_view kMagic = "\x1f\x8b";
   char head[2] = {};
   std::ifstream in(file, std::ios::binary);
@@ -90,7 +101,7 @@ bool SourcePath::is_packed() const { return archive_ || is_gzip(path_); }
 
 bool SourcePath::is_file() const {
   std::error_code ignored;
-  return archive_ ? archive_->is_file(path_) : fs::exists(path_, ignored) && !fs::is_directory(path_, ignored);
+  return archive_ ? archive_->is_file(path_) : fs::is_regular_file(path_, ignored);
 }
 
 bool SourcePath::is_folder() const {
@@ -118,6 +129,7 @@ std::string SourcePath::name() const {
 
 std::unique_ptr<ByteSource> SourcePath::open() const {
   if (archive_) return archive_->open(path_);
+  require_regular_file(path_);
   if (is_gzip(path_)) return std::make_unique<GzipSource>(path_);
   return std::make_unique<DiskSource>(path_);
 }

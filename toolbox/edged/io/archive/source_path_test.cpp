@@ -119,6 +119,16 @@ TEST(ZippedRecording, WhatComesBeforeDamageIsRead) {
   }
 }
 
+TEST(ZippedRecording, WhatUnpacksToFarMoreThanSensorsWriteIsNotReadToItsEnd) {
+  TempFolder folder;
+  Files files = packed_ecd();
+  const std::string comment = "#" + std::string(60'000, ' ') + "\n";
+  for (int i = 0; i < 1400; ++i) files[0].second += comment;  // 84 MB
+  const Recording recording = open_recording(write_zip(folder.path() / "a.zip", files));
+  EXPECT_EQ(read_all(*recording.dataset).events.size(), 2000u);
+  EXPECT_EQ(recording.dataset->repairs().at("events: file cut by damage"), 1u);
+}
+
 TEST(ZippedRecording, CutAnywhereIsRefusedInOneLine) {
   TempFolder folder;
   const std::string whole = read_text(write_zip(folder.path() / "a.zip", packed_ecd()));

@@ -28,11 +28,14 @@ std::string folder_prefix(const fs::path& folder) {
 
 class ZipSource final : public ByteSource {
  public:
-  ZipSource(std::shared_ptr<zip> archive, zip_file_t* file) : archive_(std::move(archive)), file_(file) {}
+  ZipSource(std::shared_ptr<zip> archive, zip_file_t* file, std::uint64_t most)
+      : archive_(std::move(archive)), file_(file), left_(most) {}
 
   std::size_t read(std::span<char> to) override {
     const zip_int64_t got = zip_fread(file_.get(), to.data(), to.size());
     if (got < 0) throw Damage(fmt::format("the archive is damaged here ({})", zip_file_strerror(file_.get())));
+    if (static_cast<std::uint64_t>(got) > left_) throw Damage("unpacks to far more than sensors write");
+    left_ -= static_cast<std::uint64_t>(got);
     return static_cast<std::size_t>(got);
   }
 
@@ -43,6 +46,7 @@ class ZipSource final : public ByteSource {
 
   std::shared_ptr<zip> archive_;
   std::unique_ptr<zip_file_t, Close> file_;
+  std::uint64_t left_;  ///< bytes that may follow
 };
 
 /// The text of libzip for the number of an error.
@@ -119,7 +123,7 @@ std::unique_ptr<ByteSource> ZipArchive::open(const fs::path& path) {
   if (entry == entries_.end()) throw refuse("the archive has no such file");
   zip_file_t* opened = zip_fopen_index(zip_.get(), entry->second, 0);
   if (!opened) throw refuse(zip_strerror(zip_.get()));
-  return std::make_unique<ZipSource>(zip_, opened);
+  return std::make_unique<ZipSource>(zip_, opened, most_unpacked(fs::file_size(file_)));
 }
 
 bool is_zip(ByteSpan head) {

@@ -16,6 +16,10 @@ struct zip;
 
 namespace edged {
 
+/// The bytes that a text of so many compressed ones may have: what unpacks to more is made to take time. Numbers of
+/// sensors are compressed to a fifth.
+constexpr std::uint64_t most_unpacked(std::uint64_t packed) { return (std::uint64_t{16} << 20U) + 100 * packed; }
+
 /// Not thread-safe.
 class ZipArchive {
  public:

@@ -22,7 +22,9 @@ CalibrationFile read_euroc(const YamlReader& root);
 CalibrationFile read_vins(const YamlReader& root);
 CalibrationFile read_uslam(const YamlReader& root);
 CalibrationFile read_basalt(const YamlReader& root);
+/// Of a file, or a message as `ros2 topic echo` prints it.
 CalibrationFile read_camera_info(const YamlReader& root);
+bool is_camera_info_message(const YamlReader& root);
 /// A lens in the keys of OpenCV, such as camera_matrix. The name of the distortion model may be in another node.
 Lens read_opencv_lens(const YamlReader& root, const std::string& distortion);
 std::string opencv_distortion(const YamlReader& root);

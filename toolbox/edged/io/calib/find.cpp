@@ -82,6 +82,7 @@ const std::vector<CalibrationFormat>& calibration_formats() {
       {.name = "projection_parameters or cam0_calib (VINS)",
        .keys = {"projection_parameters", "cam0_calib", "cam_left_calib", "event_left_calib"},
        .read = read_vins},
+      {.name = "k or K (camera_info of ROS)", .recognizes = is_camera_info_message, .read = read_camera_info},
       {.name = "K (Metavision)", .recognizes = is_metavision, .read = read_metavision},
       {.keys = {"T_slave_master"}, .read = refuse_metavision_extrinsics},
       {.recognizes = is_dv_xml, .read = read_dv_xml},

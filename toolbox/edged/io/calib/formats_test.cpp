@@ -290,6 +290,19 @@ TEST_F(CalibrationFormats, CameraInfoHasIntrinsicsOnly) {
   EXPECT_THAT(complaint(replaced(kCameraInfo, "[327.0, 0, 305.0", "[327.0, 2, 305.0")), HasSubstr("camera_matrix"));
 }
 
+TEST_F(CalibrationFormats, CameraInfoMayBeAMessageAsRosPrintsIt) {
+  const std::string ros2 =
+      "header:\n  frame_id: cam0\nheight: 180\nwidth: 240\ndistortion_model: equidistant\nd: [0.01, 0.02, 0.0, 0.0]\n"
+      "k: [200.0, 0.0, 120.0, 0.0, 201.0, 90.0, 0.0, 0.0, 1.0]\nr: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+      "p: [200.0, 0.0, 120.0, 0, 0.0, 201.0, 90.0, 0, 0.0, 0.0, 1.0, 0]\n---\n";
+  const std::string ros1 = replaced(replaced(ros2, "\nd:", "\nD:"), "\nk:", "\nK:");
+  for (const std::string& text : {ros2, ros1}) {
+    const Calibration c = load(text, {.otherwise = Sees::Events});
+    EXPECT_EQ(c.rig.cameras.at(0).model.fy(), 201.0);
+    EXPECT_EQ(c.rig.cameras.at(0).model.distortion(), DistortionModel::Equidistant);
+  }
+}
+
 TEST_F(CalibrationFormats, VectorIsReadFromItsFolder) {
   folder_.write("left_event_camera_intrinsic_results.yaml", kCameraInfo);
   folder_.write("left_regular_camera_intrinsic_results.yaml", replaced(kCameraInfo, "Prophesee_left", "left"));

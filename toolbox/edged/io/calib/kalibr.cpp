@@ -116,11 +116,31 @@ CalibrationFile read_kalibr(const YamlReader& root) {
   return out;
 }
 
+void warn_of_imu_matrices(const YamlReader& imu) {
+  constexpr double kRounding = 1e-6;
+  // Of OpenVINS, and of the sensors of Kalibr's model `scale-misalignment`.
+  const auto check = [](const YamlReader& sensor, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+      const auto matrix = sensor.find(key);
+      const std::vector<double> v = matrix ? matrix->numbers() : std::vector<double>();
+      const bool none = std::ranges::all_of(v, [](double x) { return std::abs(x) < kRounding; });
+      if (v.size() != 9 || none) continue;
+      const Eigen::Matrix3d M = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(v.data());
+      if ((M - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRounding)
+        matrix->warn("is not applied: correct the IMU samples of the recording by it, or calibrate without it");
+    }
+  };
+  check(imu, {"Tw", "Ta", "Tg", "R_IMUtoGYRO", "R_IMUtoACC"});
+  if (const auto gyro = imu.find("gyroscopes")) check(*gyro, {"M", "A", "C_gyro_i"});
+  if (const auto accel = imu.find("accelerometers")) check(*accel, {"M"});
+}
+
 ImuNoise read_kalibr_noise(const YamlReader& root) {
   const YamlReader imu = root.find("imu0").value_or(root);
   ImuNoise noise;
   for (const NoiseKey& key : noise_keys())
     if (*key.kalibr) noise.*key.value = imu.at(key.kalibr).positive();
+  warn_of_imu_matrices(imu);
   return noise;
 }
 

@@ -55,6 +55,19 @@ TEST_F(Kalibr, ASecondImuOfKalibrTakesItsPlaceAndClockIntoAccount) {
   EXPECT_EQ(c.rig.cameras[0].time_offset, Duration(-1'000'000));
 }
 
+TEST_F(Kalibr, MatricesOfAnImuThatAreNotAppliedAreToldOf) {
+  const std::string noise =
+      "imu0:\n  accelerometer_noise_density: 0.01\n  accelerometer_random_walk: 0.0002\n"
+      "  gyroscope_noise_density: 0.0005\n  gyroscope_random_walk: 4.0e-06\n";
+  const auto warnings = [&](const std::string& matrices) {
+    return load(kChain, {.imu_file = folder_.write("imu.yaml", noise + matrices)}).warnings;
+  };
+  const std::string none = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n", scaled = "[[1.04, 0, 0], [0, 1, 0], [0, 0, 1]]\n";
+  EXPECT_TRUE(warnings("  Ta: " + none + "  Tg: [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\n").empty());
+  EXPECT_THAT(warnings("  Ta: " + scaled + "  Tw: " + none), ElementsAre(HasSubstr("Ta: is not applied")));
+  EXPECT_THAT(warnings("  accelerometers:\n    M: " + scaled), ElementsAre(HasSubstr("accelerometers.M: is not")));
+}
+
 /// The chain with the second camera of this model; distortion: its lines, without the indentation of the first.
 std::string with_model(const std::string& model, const std::string& intrinsics, const std::string& distortion) {
   const std::string text = replaced(kChain, "camera_model: pinhole\n  distortion_model: none",

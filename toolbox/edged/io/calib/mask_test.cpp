@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Masks from pictures: read, written as text, refused.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "edged/io/calibration.hpp"
 #include "edged/io/test_support.hpp"
@@ -72,6 +73,11 @@ TEST_F(MaskOfACamera, IsRefusedWithItsKeyItsFileAndWhatToDo) {
   EXPECT_THAT(refusal("    mask: cut.png\n"), HasSubstr("cut.png: cannot be read as a picture"));
   EXPECT_THAT(refusal("    mask: black.png\n"), HasSubstr("mask: the mask ignores every pixel"));
   EXPECT_THAT(refusal("    mask: none.png\n"), HasSubstr("rig.yaml:"));
+}
+
+TEST_F(MaskOfACamera, APipeIsNoPicture) {
+  ASSERT_EQ(::mkfifo((folder_.path() / "pipe.png").c_str(), 0600), 0);
+  EXPECT_THAT(refusal("    mask: pipe.png\n"), HasSubstr("pipe.png: no such picture"));
 }
 
 TEST_F(MaskOfACamera, RunsOfPixelsMustMakeUpTheImage) {

@@ -57,8 +57,22 @@ Lens read_opencv_lens(const YamlReader& root, const std::string& distortion) {
   return lens;
 }
 
+bool is_camera_info_message(const YamlReader& root) {
+  return root.find("distortion_model") && (root.find("k") || root.find("K"));
+}
+
+/// ROS 2 calls the matrices k and d, ROS 1 K and D.
+Lens read_message_lens(const YamlReader& root) {
+  const bool ros2 = root.find("k").has_value();
+  const YamlReader matrix = root.at(ros2 ? "k" : "K");
+  Lens lens;
+  lens.model = make_model(matrix, {root.at("width").number(), root.at("height").number(), read_camera_matrix(matrix),
+                                   root.at("distortion_model").text(), root.at(ros2 ? "d" : "D").numbers()});
+  return lens;
+}
+
 CalibrationFile read_camera_info(const YamlReader& root) {
-  Lens lens = read_opencv_lens(root, opencv_distortion(root));
+  Lens lens = is_camera_info_message(root) ? read_message_lens(root) : read_opencv_lens(root, opencv_distortion(root));
   lens.name = root.text_or("camera_name", std::filesystem::path(root.file().name()).stem().string());
   lens.words = lens.name + " " + root.file().name();
   if (root.find("n_kept_views")) lens.sees = Sees::Events;  // of Metavision

@@ -107,9 +107,9 @@ void StreamedDataset::push_frame(Timestamp t, cv::Mat image, std::size_t camera)
 
 void StreamedDataset::count_outside(std::size_t count, std::size_t camera) {
   const cv::Size size = sensor_of(camera);
-  for (; count > 0; --count, ++outside_)
-    repairs_.add("events: pixel outside the sensor",
-                 fmt::format("{}: events outside the {} x {} sensor", name_, size.width, size.height));
+  outside_ += count;
+  repairs_.add("events: pixel outside the sensor",
+               fmt::format("{}: events outside the {} x {} sensor", name_, size.width, size.height), count);
   if (outside_ > 1000 && outside_ > inside_ / 100)
     throw InputError::format(
         "{}: {} of {} events lie outside the {} x {} sensor; give its size with --geometry WIDTHxHEIGHT, or the right "

@@ -20,10 +20,27 @@ constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;
 constexpr std::size_t kUsualCacheBytes = std::size_t{1} << 20U;  // default of the library for each data set
 constexpr std::uint64_t kMostRatio = 20'000;                     // no compression reaches this ratio
 
-/// Bytes of an uncompressed chunk; 0 without chunks.
+/// Refuses links to other files. For link and data set access.
+void stay_in_file(hid_t access) {
+  H5Pset_elink_cb(
+      access, [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) -> herr_t { return -1; },
+      nullptr);
+}
+
+/// Link access within the file.
+H5Handle within_file() {
+  H5Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
+  stay_in_file(access.get());
+  return access;
+}
+
+/// Bytes of an uncompressed chunk; 0 without chunks. Throws Damage if the data lie in other files: a file of events
+/// must not name any file of the system.
 std::size_t chunk_bytes_of(hid_t data) {
   const H5Handle creation(H5Dget_create_plist(data), H5Pclose);
   std::array<hsize_t, H5S_MAX_RANK> sides;
+  if (creation && (H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL))
+    throw Damage("its data lie in other files");
   if (!creation || H5Pget_layout(creation.get()) != H5D_CHUNKED) return 0;
   const int rank = H5Pget_chunk(creation.get(), static_cast<int>(sides.size()), sides.data());
   const H5Handle type(H5Dget_type(data), H5Tclose);
@@ -175,6 +192,7 @@ void H5Array::read_as(hid_t memory_type, std::uint64_t first, std::uint64_t coun
 }
 
 H5File::H5File(const std::filesystem::path& file) : path_(file) {
+  require_regular_file(file);
   prepare_h5();
   file_ = open_for_reading(file, cut_);
   if (!file_)
@@ -188,6 +206,7 @@ H5Handle H5File::open_data(const std::string& path, std::size_t cache_bytes) con
   constexpr std::size_t kSlots = 521;
   const H5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.get(), kSlots, cache_bytes, 1.0);
+  stay_in_file(access.get());
   return {H5Dopen2(file_.get(), path.c_str(), access.get()), H5Dclose};
 }
 
@@ -206,11 +225,11 @@ std::optional<H5Array> H5File::find(const std::string& path) const try {
 }
 
 bool H5File::has(const std::string& path) const {
-  return bool(H5Handle(H5Oopen(file_.get(), path.c_str(), H5P_DEFAULT), H5Oclose));
+  return bool(H5Handle(H5Oopen(file_.get(), path.c_str(), within_file().get()), H5Oclose));
 }
 
 std::optional<std::string> H5File::text_attribute(const std::string& object, const std::string& name) const {
-  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, within_file().get()),
                            H5Aclose);
   const H5Handle type(attribute ? H5Aget_type(attribute.get()) : H5I_INVALID_HID, H5Tclose);
   if (!type || H5Tget_class(type.get()) != H5T_STRING) return std::nullopt;
@@ -230,7 +249,7 @@ std::optional<std::string> H5File::text_attribute(const std::string& object, con
 }
 
 std::optional<std::int64_t> H5File::number_attribute(const std::string& object, const std::string& name) const {
-  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+  const H5Handle attribute(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, within_file().get()),
                            H5Aclose);
   const H5Handle space(attribute ? H5Aget_space(attribute.get()) : H5I_INVALID_HID, H5Sclose);
   std::int64_t number = 0;

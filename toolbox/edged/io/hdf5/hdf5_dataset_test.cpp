@@ -280,6 +280,33 @@ TEST(Hdf5, RefusalsSayWhatIsWrong) {
   EXPECT_THAT(refusal(), HasSubstr("cannot be opened"));
 }
 
+/// Else a file of events could name any file of the system.
+TEST(Hdf5, DataInOtherFilesAreNotRead) {
+  TempFolder folder;
+  const auto file = folder.path() / "a.h5", other = write_events(folder.path() / "other.h5", vga_events(100));
+  {
+    H5Maker maker(file);
+    put_event_columns(maker, "/events", vga_events(100));
+  }
+  H5Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+  H5Ldelete(opened.get(), "/events/x", H5P_DEFAULT);
+  EXPECT_GE(H5Lcreate_external(other.c_str(), "/events/x", opened.get(), "/events/x", H5P_DEFAULT, H5P_DEFAULT), 0);
+  H5Ldelete(opened.get(), "/events/y", H5P_DEFAULT);
+  const H5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  EXPECT_GE(H5Pset_external(creation.get(), "/etc/passwd", 0, 200), 0);
+  const hsize_t count = 100;
+  const H5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  H5Handle data(
+      H5Dcreate2(opened.get(), "/events/y", H5T_STD_U16LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+      H5Dclose);
+  ASSERT_TRUE(data);
+  data = H5Handle(), opened = H5Handle();
+  const H5File reader(file);
+  EXPECT_FALSE(reader.find("/events/x"));
+  EXPECT_FALSE(reader.find("/events/y"));
+  EXPECT_TRUE(reader.find("/events/t"));
+}
+
 TEST_P(H5Packs, CutAnywhereItIsRefusedOrGivesEventsOfTheRecording) {
   TempFolder folder;
   const std::string whole = read_text(write_events(folder.path() / "whole.h5", vga_events(30'000), GetParam(), 2000));

@@ -43,6 +43,9 @@ class EvtDecoder {
   /// base of their own.
   void reset();
 
+  /// Goes back to the state of an earlier copy, but keeps the counts and the incomplete word.
+  void return_to(const EvtDecoder& earlier) { state_ = earlier.state_; }
+
   const Counts& counts() const { return counts_; }
 
  private:

@@ -59,6 +59,8 @@ bool read_png(ByteSpan bytes, cv::Mat& image, std::vector<png_bytep>& rows) {
     png_destroy_read_struct(&png, &info, nullptr);
     return false;
   }
+  constexpr png_uint_32 kMostChunks = 16;  // texts and the like, each of up to 8 MB in memory
+  png_set_chunk_cache_max(png, kMostChunks);
   png_set_read_fn(png, &bytes, read_png_bytes);
   png_read_info(png, info);
   const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);

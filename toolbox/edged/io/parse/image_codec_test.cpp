@@ -3,6 +3,7 @@
 #include "edged/io/parse/image_codec.hpp"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -50,6 +51,24 @@ TEST(ImageCodec, TakesTheUpperBitsOfDeepImages) {
   ASSERT_EQ(read.size(), cv::Size(2, 1));
   EXPECT_EQ(read.at<std::uint8_t>(0, 0), 255);
   EXPECT_EQ(read.at<std::uint8_t>(0, 1), 128);
+}
+
+TEST(ImageCodec, TextsInAPictureTakeLittleMemory) {
+  Bytes png = encode_png(gray_waves());
+  const auto big_endian = [](std::uint32_t value) {
+    return Bytes{static_cast<std::uint8_t>(value >> 24U), static_cast<std::uint8_t>(value >> 16U),
+                 static_cast<std::uint8_t>(value >> 8U), static_cast<std::uint8_t>(value)};
+  };
+  Bytes chunk = {'t', 'E', 'X', 't', 'k', 0};
+  chunk.resize(1 << 20, 'x');
+  Bytes texts;
+  for (int i = 0; i < 100; ++i)
+    for (const Bytes& part : {big_endian(static_cast<std::uint32_t>(chunk.size() - 4)), chunk,
+                              big_endian(static_cast<std::uint32_t>(crc32_z(0, chunk.data(), chunk.size())))})
+      texts.insert(texts.end(), part.begin(), part.end());
+  constexpr std::size_t kHeader = 8 + 25;
+  png.insert(png.begin() + kHeader, texts.begin(), texts.end());
+  EXPECT_EQ(most_different(decode_gray(png), gray_waves()), 0.0);
 }
 
 /// An independent reader and writer.

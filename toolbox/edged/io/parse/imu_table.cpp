@@ -48,6 +48,30 @@ const TableKind& imu_kind() {
   return kind;
 }
 
+/// Stamps that are a counter of 32 bits, which begins again at zero. Of seconds there is none: it would last for ever.
+class Counter32 {
+ public:
+  explicit Counter32(TimeUnit unit)
+      : period_(unit == TimeUnit::Seconds ? Duration(0) : duration_from_seconds(4294967296.0 * seconds_of(unit))) {}
+
+  /// The stamp, continued if it steps back by about the whole range of the counter. Nothing if it is out of range.
+  std::optional<Timestamp> continued(Timestamp t) {
+    constexpr Duration kLongestStep = std::chrono::milliseconds(100);
+    t += turns_;
+    if (before_ && t + period_ > *before_ - kLongestStep && t + period_ < *before_ + kLongestStep) {
+      turns_ += period_;
+      t += period_;
+    }
+    if (to_ns(t) > kMaxStampNs) return std::nullopt;
+    before_ = t;
+    return t;
+  }
+
+ private:
+  Duration period_, turns_{0};
+  std::optional<Timestamp> before_;
+};
+
 /// A unit in the names of columns, as a whole or by its beginning.
 struct ImuUnit {
   std::size_t sensor;
@@ -210,9 +234,11 @@ TextTable documented_imu_table(const SourcePath& file, const TextTable& document
 }
 
 StampedLines<ImuSample>::Spec imu_lines(const SourcePath& file, const TextTable& table) {
-  const auto parse = [reader = RowReader(table)](std::string_view line) -> std::optional<ImuSample> {
+  const auto parse = [reader = RowReader(table),
+                      counter = Counter32(table.unit)](std::string_view line) mutable -> std::optional<ImuSample> {
     std::array<double, kRoles - 1> v{};
-    const auto t = reader.read(line, v);
+    const auto read = reader.read(line, v);
+    const auto t = read ? counter.continued(*read) : std::nullopt;
     if (!t) return std::nullopt;
     return ImuSample{*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
   };

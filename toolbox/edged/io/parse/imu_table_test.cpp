@@ -82,6 +82,32 @@ TEST(ImuText, WhatNoNameTellsIsFoundFromTheContentAndSaidToBeAGuess) {
   EXPECT_THAT(form.said, HasSubstr("[g] (guessed)"));
 }
 
+TEST(ImuText, DecimalCommasBetweenSemicolonsAreRead) {
+  const TempFolder folder;
+  std::string text = imu_lines("t[s],gx[rad/s],gy[rad/s],gz[rad/s],ax[m/s^2],ay[m/s^2],az[m/s^2]", 1.0, 0.1, 9.8);
+  for (char& c : text) c = c == ',' ? ';' : c == '.' ? ',' : c;
+  const auto file = folder.write("imu.csv", text);
+  Repairs repairs;
+  StampedLines<ImuSample> lines(imu_lines(file, find_imu_table(file)), repairs);
+  EXPECT_EQ(lines.peek()->t, timestamp_from_seconds(0.9));
+  EXPECT_DOUBLE_EQ(lines.peek()->accel_B.z(), 9.8);
+  EXPECT_EQ(imu_lines(file, find_imu_table(file)).last_stamp(), timestamp_from_seconds(0.9 + 0.005 * 59));
+}
+
+TEST(ImuText, StampsOfACounterOf32BitsGoOnBehindItsEnd) {
+  const TempFolder folder;
+  std::string text = "t[us],gx[rad/s],gy[rad/s],gz[rad/s],ax[m/s^2],ay[m/s^2],az[m/s^2]\n";
+  for (std::uint32_t i = 0; i < 40; ++i) text += fmt::format("{},0,0,0,0,0,9.8\n", 4'294'900'000U + 5000U * i);
+  const auto file = folder.write("imu.csv", text);
+  Repairs repairs;
+  StampedLines<ImuSample> lines(imu_lines(file, find_imu_table(file)), repairs);
+  std::vector<Timestamp> stamps;
+  while (lines.peek()) stamps.push_back(lines.pop().t);
+  ASSERT_EQ(stamps.size(), 40u);
+  EXPECT_EQ(stamps.back() - stamps.front(), std::chrono::milliseconds(195));
+  EXPECT_TRUE(repairs.counts().empty());
+}
+
 TEST(ImuText, WhatIsNotCertainIsRefusedWithALineToWrite) {
   const TempFolder folder;
   EXPECT_THAT(refusal_of(folder, imu_lines("", 1, 0.8, 1)), HasSubstr("gravity does not identify"));

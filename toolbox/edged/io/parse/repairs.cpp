@@ -6,6 +6,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -14,8 +16,9 @@ constexpr std::size_t kMaxBadLines = 1000;
 constexpr std::size_t kMaxBadShare = 100;  // one in a hundred
 }  // namespace
 
-void Repairs::add(const std::string& kind, const std::string& detail) {
-  if (++counts_[kind] == 1) spdlog::warn(fmt::format("{} (further cases of \"{}\" are only counted)", detail, kind));
+void Repairs::add(const std::string& kind, const std::string& detail, std::size_t count) {
+  if (count > 0 && std::exchange(counts_[kind], counts_[kind] + count) == 0)
+    spdlog::warn(fmt::format("{} (further cases of \"{}\" are only counted)", detail, kind));
 }
 
 void LineDamage::bad(std::size_t line, const std::string& kind, const std::string& detail) {

@@ -12,7 +12,7 @@ namespace edged {
 /// Counts by kind, e.g. "imu: duplicate stamp". The first of each kind is logged.
 class Repairs {
  public:
-  void add(const std::string& kind, const std::string& detail);
+  void add(const std::string& kind, const std::string& detail, std::size_t count = 1);
   const std::map<std::string, std::size_t>& counts() const { return counts_; }
 
  private:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "edged/core/check.hpp"
 
@@ -54,6 +55,18 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
   return d;
 }
 
+/// "1,5;2,25": each comma stands between digits, and a semicolon between two of them.
+bool has_decimal_commas(std::string_view line) {
+  bool comma = false, any = false, separated = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == ';') comma = false, separated = true;
+    if (line[i] != ',') continue;
+    if (comma || i == 0 || i + 1 == line.size() || !is_digit(line[i - 1]) || !is_digit(line[i + 1])) return false;
+    comma = any = true;
+  }
+  return any && separated;
+}
+
 struct UnitName {
   TimeUnit unit;
   const char* name;
@@ -80,11 +93,34 @@ void BlockReader::fill() try {
   at_end_ = true;
 }
 
+/// Leaves the byte order mark out, and looks for decimal commas in the first lines.
+void BlockReader::begin_text() {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  constexpr int kFirstLines = 100;
+  std::string_view text(buffer_.data(), filled_);
+  if (text.starts_with(kMark)) {
+    text.remove_prefix(kMark.size());
+    std::memmove(buffer_.data(), text.data(), text.size());
+    filled_ = text.size();
+  }
+  text = std::string_view(buffer_.data(), filled_);
+  for (int i = 0; i < kFirstLines && !text.empty() && !decimal_commas_; ++i) {
+    const std::string_view line = trim(text.substr(0, text.find('\n')));
+    decimal_commas_ = has_decimal_commas(line);
+    text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+  }
+}
+
 std::string_view BlockReader::next() {
   filled_ -= given_;
   std::memmove(buffer_.data(), buffer_.data() + given_, filled_);
   given_ = 0;
+  const std::size_t kept = filled_;
   fill();
+  if (!std::exchange(begun_, true)) begin_text();
+  if (decimal_commas_)
+    std::replace(buffer_.begin() + static_cast<std::ptrdiff_t>(kept),
+                 buffer_.begin() + static_cast<std::ptrdiff_t>(filled_), ',', '.');
 
   const std::string_view all(buffer_.data(), filled_);
   const std::size_t last_end = all.rfind('\n');
@@ -202,7 +238,7 @@ std::string format_seconds(Timestamp t) {
 std::optional<Timestamp> last_stamp(const SourcePath& file,
                                     const std::function<std::optional<Timestamp>(std::string_view)>& parse) {
   constexpr std::streamoff kTail = 8192;
-  if (file.is_packed()) return std::nullopt;
+  if (!file.is_file() || file.is_packed()) return std::nullopt;
   std::ifstream in(file.string(), std::ios::binary | std::ios::ate);
   if (!in) return std::nullopt;
   const std::streamoff size = in.tellg();
@@ -211,6 +247,9 @@ std::optional<Timestamp> last_stamp(const SourcePath& file,
   in.seekg(from);
   in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
 
+  if (const std::size_t begin = tail.find('\n') + 1;
+      has_decimal_commas(tail.substr(begin, tail.find('\n', begin) - begin)))
+    std::ranges::replace(tail, ',', '.');
   std::string_view rest = tail;
   rest = rest.substr(0, rest.rfind('\n') + 1);  // a cut last line may have a wrong stamp
   while (!rest.empty()) {

@@ -28,7 +28,8 @@ std::vector<std::string> texts_of(const Range& range, Text text) {
   return texts;
 }
 
-/// A file as blocks of complete lines. Throws InputError if it is not readable or not text (no line end in a block).
+/// A file as blocks of complete lines, without a byte order mark, and with points for decimal commas between
+/// semicolons. Throws InputError if it is not readable or not text (no line end in a block).
 class BlockReader {
  public:
   explicit BlockReader(const SourcePath& file, std::size_t block_bytes = 256 * 1024);
@@ -44,6 +45,7 @@ class BlockReader {
 
  private:
   void fill();
+  void begin_text();
 
   std::string name_;
   std::unique_ptr<ByteSource> source_;
@@ -53,6 +55,8 @@ class BlockReader {
   std::size_t given_ = 0;   ///< bytes already returned
   bool at_end_ = false;
   bool unterminated_ = false;
+  bool begun_ = false;
+  bool decimal_commas_ = false;
 };
 
 struct TextLine {

@@ -73,6 +73,14 @@ TEST(TrajectoryIo, AStampBelowAnHourInNanosecondsIsKnownByTheCommas) {
   expect_same(read_trajectory(seconds), read_tum(seconds));
 }
 
+TEST(TrajectoryIo, AByteOrderMarkAndDecimalCommasAreReadAsOtherPrograms) {
+  TempFolder folder;
+  const auto marked = folder.write("a.csv", "\xEF\xBB\xBF#timestamp,tx,ty,tz,qx,qy,qz,qw\n0.5,1,2,3.5,0,0,0,1\n");
+  const auto commas = folder.write("b.csv", "\xEF\xBB\xBFtimestamp;tx;ty;tz;qx;qy;qz;qw\n0,5;1;2;3,5;0;0;0;1\n");
+  expect_same(read_trajectory(marked), read_trajectory(commas));
+  EXPECT_EQ(read_trajectory(commas).at(0).T.translation(), Eigen::Vector3d(1, 2, 3.5));
+}
+
 TEST(TrajectoryIo, OtherProgramsFilesAreReadInTheirOrder) {
   TempFolder folder;
   const auto ns = [](int i) { return 1'403'636'580'000'000'000 + 50'000'000LL * i; };

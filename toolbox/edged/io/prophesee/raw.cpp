@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 65536;       // no header is longer
 constexpr std::size_t kEventBlockBytes = 262144;  // a multiple of every word
+constexpr std::size_t kBytesPerWrong = 50;        // with more wrong words, bytes may be missing
 
 using HeaderFields = std::map<std::string, std::string, std::less<>>;
 
@@ -116,9 +117,15 @@ class PropheseeDataset final : public StreamedDataset {
   bool read_on() override {
     const Bytes bytes = file_.read(at_, kEventBlockBytes);
     at_ += bytes.size();
+    const EvtDecoder before_block = decoder_;
     const EvtDecoder::Counts before = decoder_.counts();
     events_.clear();
     decoder_.decode(bytes, events_);
+    if (wrong(decoder_) - wrong(before_block) > bytes.size() / kBytesPerWrong) {
+      decoder_ = before_block;
+      events_.clear();
+      decode_in_pieces(bytes);
+    }
     for (Event& event : events_) event.t += time_offset_;
     decoded_ += events_.size();
     push_events(events_);
@@ -126,12 +133,46 @@ class PropheseeDataset final : public StreamedDataset {
     return !bytes.empty();
   }
 
+  /// Words that no healthy stream has.
+  static std::size_t wrong(const EvtDecoder& decoder) { return decoder.counts().unknown + decoder.counts().outside; }
+
+  /// Where bytes are missing, words begin at another place. Of each piece it takes the beginning that has fewest wrong
+  /// words by far.
+  void decode_in_pieces(ByteSpan bytes) {
+    constexpr std::size_t kPiece = 1024, kLongestWord = 8, kByFar = 4;
+    while (!bytes.empty()) {
+      const ByteSpan piece = bytes.first(std::min(kPiece, bytes.size()));
+      bytes = bytes.subspan(piece.size());
+      EvtDecoder best = decoder_;
+      std::vector<Event> best_events;
+      best.decode(piece, best_events);
+      std::size_t skipped = 0;
+      for (std::size_t skip = 1; skip < std::min(kLongestWord, piece.size()); ++skip) {
+        if (wrong(best) - wrong(decoder_) <= piece.size() / kBytesPerWrong) break;
+        EvtDecoder trial = decoder_;
+        std::vector<Event> events;
+        trial.decode(piece.subspan(skip), events);
+        if (kByFar * (wrong(trial) - wrong(decoder_)) > wrong(best) - wrong(decoder_)) continue;
+        best = trial;
+        best_events = std::move(events);
+        skipped = skip;
+      }
+      // The place of the gap: its times may be wrong by whole turns of the counter.
+      if (best.counts().unknown - decoder_.counts().unknown > piece.size() / kBytesPerWrong) {
+        best.return_to(decoder_);
+        best_events.clear();
+      }
+      if (skipped > 0) repairs_.add("file: bytes missing", fmt::format("{}: before byte {}", name_, at_));
+      decoder_ = best;
+      events_.insert(events_.end(), best_events.begin(), best_events.end());
+    }
+  }
+
   void count_left_out(const EvtDecoder::Counts& before, const EvtDecoder::Counts& now) {
     count_outside(now.outside - before.outside);
-    for (std::size_t i = before.untimed; i < now.untimed; ++i)
-      repairs_.add("events: before the first time", name_ + ": events before the first time of the stream");
-    for (std::size_t i = before.unknown; i < now.unknown; ++i)
-      repairs_.add("events: unknown word", name_ + ": words of no known type");
+    repairs_.add("events: before the first time", name_ + ": events before the first time of the stream",
+                 now.untimed - before.untimed);
+    repairs_.add("events: unknown word", name_ + ": words of no known type", now.unknown - before.unknown);
     if (now.unknown > 1000 && now.unknown > decoded_ / 100)
       throw InputError::format(
           "{}: {} words are of no known type: the file is damaged or not of the encoding that its header names", name_,

@@ -94,6 +94,23 @@ std::string refusal(const std::string& content) {
   return input_error([&] { open_recording(file); });
 }
 
+TEST(PropheseeRaw, ALostByteCostsFewEvents) {
+  TempFolder folder;
+  const std::vector<Event> events = generated_events(200'000, 1280, 720, 20);
+  for (const EvtFormat format : {EvtFormat::Evt3, EvtFormat::Evt2, EvtFormat::Evt21Legacy}) {
+    const std::string words = EvtEncoder(format).encode(events);
+    const std::string name = format == EvtFormat::Evt3 ? "EVT3" : format == EvtFormat::Evt2 ? "EVT2" : "EVT21";
+    for (const std::size_t lost : {1U, 3U}) {
+      const std::string cut = std::string(words).erase(words.size() / 3, lost).erase(words.size() / 2, 1);
+      const DamagedRead read = read_damaged(folder, "% format " + name + ";height=720;width=1280\n% end\n" + cut);
+      EXPECT_EQ(read.refusal, "") << name;
+      EXPECT_GT(read.events.size(), events.size() - 2000) << name;
+      EXPECT_TRUE(read.events.back() == events.back()) << name;
+      EXPECT_EQ(read.repairs.at("file: bytes missing"), 2u) << name;
+    }
+  }
+}
+
 TEST(PropheseeRaw, RefusalsSayWhatIsWrongAndWhatToDo) {
   const std::string evt2 = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
   EXPECT_THAT(refusal("% evt 2.0\n% end\n" + evt2), HasSubstr("--geometry"));

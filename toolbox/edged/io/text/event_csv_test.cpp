@@ -86,7 +86,7 @@ TEST(EventCsv, AHeaderNamesColumnsAndUnit) {
 TEST(EventCsv, TheSizeOfTheSensorMayStandInTheFile) {
   TempFolder folder;
   const std::vector<Event> events = csv_events();
-  for (const char* header : {"346 260\n", "# geometry 346x260\n"}) {
+  for (const char* header : {"346 260\n", "# geometry 346x260\n", "%geometry:346,260\n"}) {
     const auto file = folder.write("a.txt", header + csv_text(events, "txyp", " ", TimeUnit::Seconds));
     const Recording recording = open_recording(file);
     EXPECT_EQ(recording.dataset->info().event_sensor, kSensor);
@@ -95,6 +95,18 @@ TEST(EventCsv, TheSizeOfTheSensorMayStandInTheFile) {
   }
   const auto silent = folder.write("a.txt", csv_text(events, "txyp", " ", TimeUnit::Seconds));
   EXPECT_THAT(input_error([&] { open_recording(silent); }), HasSubstr("--geometry"));
+}
+
+TEST(EventCsv, PolaritiesMayBeTrueAndFalse) {
+  TempFolder folder;
+  const std::vector<Event> events = csv_events();
+  std::string text = "x,y,p,t[us]\n";
+  for (const Event& e : events)
+    text +=
+        fmt::format("{},{},{},{}\n", e.x, e.y, e.positive ? "True" : "False", stamp_text(e.t, TimeUnit::Microseconds));
+  const Recording recording = open_csv(folder.write("a.csv", text));
+  EXPECT_TRUE(read_all(*recording.dataset).events == events);
+  EXPECT_TRUE(recording.dataset->repairs().empty());
 }
 
 /// A recording of this duration and event rate, with stamps in that unit from `begin_s` on.

@@ -54,9 +54,10 @@ std::optional<EventTextForm> form_by_heading(const SourcePath& file) {
 std::optional<Row> numbers_of(std::string_view line) {
   Row numbers;
   for (FieldReader fields(line); !fields.rest().empty() && numbers.size() <= EventColumns::kMost;) {
-    const auto number = parse_number(fields.next());
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
+    const std::string_view field = fields.next();
+    const auto number = parse_number(field), polarity = number ? number : parse_polarity(field);
+    if (!polarity) return std::nullopt;
+    numbers.push_back(*polarity);
   }
   return numbers;
 }
@@ -86,12 +87,15 @@ std::optional<EventColumns> columns_by_content(const std::vector<Row>& rows) {
   return std::nullopt;
 }
 
-/// "# geometry 240x180".
+/// "# geometry 240x180", "%geometry:1280,720".
 std::optional<cv::Size> geometry_in_comment(std::string_view line) {
-  constexpr std::string_view kKey = "geometry ";
-  const std::size_t at = line.find(kKey);
-  return at == std::string_view::npos ? std::nullopt
-                                      : parse_geometry(FieldReader(line.substr(at + kKey.size())).next());
+  constexpr std::string_view kKey = "geometry";
+  const std::size_t at = line.find(kKey), size = line.find_first_of("0123456789", at);
+  if (at == std::string_view::npos || size == std::string_view::npos) return std::nullopt;
+  FieldReader fields(line.substr(size));
+  const std::string first(fields.next());
+  const auto both = parse_geometry(first);
+  return both ? both : parse_geometry(fmt::format("{}x{}", first, fields.next()));
 }
 
 /// The lines at the beginning of a file: those above the events, and the numbers of the events.

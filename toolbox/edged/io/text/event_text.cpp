@@ -142,13 +142,18 @@ std::optional<std::uint16_t> whole_number(std::string_view field) {
 
 }  // namespace
 
+std::optional<double> parse_polarity(std::string_view field) {
+  if (field == "True" || field == "true") return 1.0;
+  return field == "False" || field == "false" ? std::optional(0.0) : parse_number(field);
+}
+
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event) {
   FieldReader fields(line);
   std::array<std::string_view, EventColumns::kMost> field;
   for (std::size_t i = 0; i < columns.count; ++i) field[i] = fields.next();
   const auto t = parse_stamp(field[columns.t], columns.unit);
   const auto x = whole_number(field[columns.x]), y = whole_number(field[columns.y]);
-  const auto p = parse_number(field[columns.p]);
+  const auto p = parse_polarity(field[columns.p]);
   if (!t || !x || !y || !p || (*p != 0 && std::abs(*p) != 1) || !fields.rest().empty()) return false;
   event = {*t, *x, *y, *p > 0};
   return true;
@@ -168,7 +173,7 @@ std::string why_no_event(std::string_view line, const EventColumns& columns) {
   if (!parse_stamp(field[columns.t], columns.unit)) return wrong(columns.t, "a stamp");
   for (const std::size_t pixel : {columns.x, columns.y})
     if (!whole_number(field[pixel])) return wrong(pixel, "a pixel, whole and from 0 on");
-  return wrong(columns.p, "a polarity: 0 or 1, or -1 or 1");
+  return wrong(columns.p, "a polarity: 0 or 1, -1 or 1, or True or False");
 }
 
 std::optional<Timestamp> parse_event_stamp(std::string_view line, const EventColumns& columns) {

@@ -31,8 +31,11 @@ struct EventColumns {
 /// find_heading() does.
 EventColumns named_event_columns(const SourcePath& file);
 
-/// Parses a line: stamp (exact to the nanosecond), column, row, polarity 0 or 1 (or -1), in any order and notation of
-/// numbers (exponents, `96.0`), separated by blanks, commas or semicolons. False if the line is no event.
+/// A number, True or False.
+std::optional<double> parse_polarity(std::string_view field);
+
+/// Parses a line: stamp (exact to the nanosecond), column, row, polarity 0 or 1 (or -1, True, False), in any order and
+/// notation of numbers (exponents, `96.0`), separated by blanks, commas or semicolons. False if the line is no event.
 bool parse_event_fields(std::string_view line, const EventColumns& columns, Event& event);
 
 /// What keeps the line from being an event, by its column as the user counts: "column 3 ('abc') must be ...".

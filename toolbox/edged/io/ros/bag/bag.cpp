@@ -36,6 +36,8 @@ class BagFields {
     }
   }
 
+  bool has(std::string_view name) const { return fields_.contains(name); }
+
   std::string_view text(std::string_view name) const {
     const auto found = fields_.find(name);
     if (found == fields_.end()) throw Damage("no field " + std::string(name));
@@ -94,9 +96,7 @@ std::string bag_record(const BagHeader& header, std::string_view data) {
 /// A record has a header with named fields, and data.
 class Bag final : public RecordSource {
  public:
-  Bag(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kBagMagic.size(), repairs) {
-    find_topics();
-  }
+  Bag(const BagFile& file, Repairs* repairs) : RecordSource(file, kBagMagic.size(), repairs) { find_topics(); }
 
   Wire wire() const override { return Wire::Ros1; }
 
@@ -109,12 +109,36 @@ class Bag final : public RecordSource {
     if (header_bytes > kLongestHeader) throw Damage("header of a record too long");
     const Bytes head = file().read(at + 4, header_bytes + 4);
     ByteReader reader(head);
-    const auto op = BagFields(reader.take(header_bytes)).number<std::uint8_t>("op");
+    const BagFields fields(reader.take(header_bytes));
+    const auto op = fields.number<std::uint8_t>("op");
     RecordPlace place{at, at + 8 + header_bytes, reader.number<std::uint32_t>(), kSkipped};
-    if (op == kBagChunk) place.kind = kChunk;
-    if (op == kBagMessage || op == kBagConnection) place.kind = kPlain;
+    if (fields.has("compression")) {  // its opcode may be damaged
+      place.kind = kChunk;
+      place.closed = fields.text("compression") == "none";
+      note_compression(fields.text("compression"));
+      // Of two lengths, the one is right behind which a record begins.
+      const auto size = fields.number<std::uint32_t>("size");
+      if (place.closed && size != place.bytes && record_begins(place.data + size))
+        place.bytes = size;
+      else if (place.closed && size != place.bytes && !record_begins(place.end()))
+        throw Damage("the lengths of a chunk contradict each other");
+    } else if (op == kBagMessage || op == kBagConnection) {
+      place.kind = kPlain;
+    } else if (op < kBagMessage || op > kBagConnection || op == kBagChunk) {
+      throw Damage("no record");
+    }
     if (place.kind != kSkipped && place.bytes > kLargestRecord) throw Damage("record too long");
     return place;
+  }
+
+  bool begins_record(ByteSpan bytes) const override try {
+    ByteReader record(bytes);
+    const std::size_t length = bytes.size() < 4 ? 0 : record.number<std::uint32_t>();
+    if (length == 0 || length > record.left()) return false;  // by far most often
+    const std::string_view header = record.text(length);
+    return header.find("op=") != header.npos && BagFields(as_bytes(header)).has(packed() ? "compression" : "op");
+  } catch (const Damage&) {
+    return false;
   }
 
   void read_index() override {
@@ -123,7 +147,7 @@ class Bag final : public RecordSource {
     ByteReader reader(record);
     const auto place = BagFields(take_sized(reader)).number<std::uint64_t>("index_pos");
     if (place < head.end()) throw Damage("unfinished");
-    read_index_at(place, file().size());
+    take_index(index_at(place, file().size()));
   }
 
   std::optional<Message> take_record(ByteReader& records) override {
@@ -134,16 +158,20 @@ class Bag final : public RecordSource {
     if (op == kBagChunkInfo) take_chunk_info(header, data);
     if (op != kBagMessage) return std::nullopt;
     const auto connection = topic_of_connection_.find(header.number<std::uint32_t>("conn"));
-    if (connection == topic_of_connection_.end()) throw Damage("message of an unknown connection");
+    if (connection == topic_of_connection_.end()) {
+      repair("message of an unknown topic", fmt::format("connection {}", header.number<std::uint32_t>("conn")));
+      return std::nullopt;
+    }
     extend(header.time("time"));
     return Message{connection->second, data};
   }
 
   PackedChunk open_chunk(ByteReader record) override {
     const BagFields header(take_sized(record));
-    const auto packed = record.number<std::uint32_t>();
-    return {header.text("compression"), header.number<std::uint32_t>("size"),
-            record.take(std::min<std::size_t>(packed, record.left()))};
+    const auto stated = record.number<std::uint32_t>(), size = header.number<std::uint32_t>("size");
+    const std::string_view compression = header.text("compression");
+    const bool sound = header.number<std::uint8_t>("op") == kBagChunk && (compression != "none" || stated == size);
+    return {compression, size, record.take(record.left()), 0, sound};
   }
 
   void take_connection(const BagFields& header, ByteSpan data) {
@@ -253,7 +281,7 @@ class BagWriter final : public RecordWriter {
 
 }  // namespace
 
-std::unique_ptr<MessageSource> open_ros1_bag(const std::filesystem::path& file, Repairs* repairs) {
+std::unique_ptr<MessageSource> open_ros1_bag(const BagFile& file, Repairs* repairs) {
   return std::make_unique<Bag>(file, repairs);
 }
 

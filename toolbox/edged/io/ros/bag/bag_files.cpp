@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <optional>
 #include <set>
+#include <tuple>
 
 namespace edged {
 namespace {
@@ -25,6 +27,13 @@ std::optional<PartName> part_name(const std::filesystem::path& file) {
   const auto [stop, error] = std::from_chars(name.data() + bar + 1, end, part.number);
   if (error != std::errc() || stop != end || part.number < 0) return std::nullopt;
   return part;
+}
+
+/// name_2 before name_10, compressed or not.
+std::tuple<std::string, int, std::size_t, std::string> order_of_part(const std::filesystem::path& file) {
+  const std::string name = (file.extension() == ".zstd" ? file.stem() : file.filename()).string();
+  const PartName part = part_name(file).value_or(PartName());
+  return {part.front, part.number, name.size(), name};
 }
 
 /// The files that a metadata.yaml lists: lines of `- NAME.db3`.
@@ -55,8 +64,7 @@ std::vector<std::filesystem::path> bag_parts(const std::filesystem::path& folder
     const auto extension = plain.extension();
     if (entry.is_regular_file() && (extension == ".db3" || extension == ".mcap")) parts.push_back(entry.path());
   }
-  // name_2 before name_10.
-  std::ranges::sort(parts, {}, [](const std::filesystem::path& p) { return std::pair(p.string().size(), p.string()); });
+  std::ranges::sort(parts, {}, order_of_part);
   return parts;
 }
 

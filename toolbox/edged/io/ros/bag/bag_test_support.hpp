@@ -52,10 +52,10 @@ class Db3Writer final : public MessageSink {
     check(sqlite3_finalize(insert));
   }
   void finish() override { run("COMMIT"); }
+  void run(const std::string& query) { check(sqlite3_exec(database_, query.c_str(), nullptr, nullptr, nullptr)); }
 
  private:
   static void check(int result) { ASSERT_EQ(result, SQLITE_OK); }
-  void run(const std::string& query) { check(sqlite3_exec(database_, query.c_str(), nullptr, nullptr, nullptr)); }
 
   std::string compression_;
   sqlite3* database_ = nullptr;

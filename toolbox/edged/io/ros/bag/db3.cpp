@@ -34,37 +34,13 @@ bool is_cut(const std::filesystem::path& file) {
 
 class Db3 final : public MessageSource {
  public:
-  Db3(const std::filesystem::path& file, Repairs* repairs) : name_(file.string()), repairs_(repairs) {
-    // Immutable: also opens a recording in a read-only folder, and does not change its journal.
-    std::string uri = "file:";
-    for (const char c : std::filesystem::absolute(file).string())
-      uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", c) : std::string(1, c);
-    sqlite3* opened = nullptr;
-    const int result =
-        sqlite3_open_v2((uri + "?immutable=1").c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
-    database_.reset(opened);
-    if (result != SQLITE_OK) throw InputError::format("{}: cannot be opened as SQLite file", name_);
+  Db3(const std::filesystem::path& file, std::string name, Repairs* repairs)
+      : name_(std::move(name)), repairs_(repairs) {
+    open(file);
     if (repairs_ && is_cut(file))
       repairs_->add("bag: cut", name_ + ": the file ends before its last page: messages there may be damaged");
-
-    const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
-    while (step(topics.get())) {
-      if (column_text(topics.get(), 3) != "cdr") continue;
-      const std::string name(column_text(topics.get(), 1));
-      topic_of_id_[sqlite3_column_int64(topics.get(), 0)] = topic_index(topics_, name, column_text(topics.get(), 2));
-    }
-    const Statement counts =
-        prepare("SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM messages GROUP BY topic_id");
-    std::int64_t first = INT64_MAX, last = 0;
-    while (step(counts.get())) {
-      const auto topic = topic_of_id_.find(sqlite3_column_int64(counts.get(), 0));
-      if (topic == topic_of_id_.end()) continue;
-      topics_[topic->second].count += static_cast<std::size_t>(sqlite3_column_int64(counts.get(), 1));
-      first = std::min(first, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 2), 0));
-      last = std::max(last, std::max<std::int64_t>(sqlite3_column_int64(counts.get(), 3), 0));
-    }
-    if (topics_.empty()) throw InputError::format("{}: no topics in this bag: record it again", name_);
-    if (last > first) length_ = Duration(last - first);
+    find_topics();
+    count_messages();
     messages_ = prepare("SELECT topic_id, data FROM messages ORDER BY id");
   }
 
@@ -89,6 +65,56 @@ class Db3 final : public MessageSource {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
   };
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+
+  /// Changes nothing, also in a read-only folder. The log of a recorder that was killed is read without the file that
+  /// its readers share; without a log none is begun.
+  void open(const std::filesystem::path& file) {
+    const std::filesystem::path whole = std::filesystem::absolute(file);
+    std::string uri = "file:";
+    for (const char c : whole.string())
+      uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", c) : std::string(1, c);
+    std::error_code none;
+    const std::uintmax_t log_bytes = std::filesystem::file_size(whole.string() + "-wal", none);
+    uri += !none && log_bytes > 0 ? "?vfs=unix-none" : "?immutable=1";
+    sqlite3* opened = nullptr;
+    const int result = sqlite3_open_v2(uri.c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+    database_.reset(opened);
+    if (result != SQLITE_OK) throw InputError::format("{}: cannot be opened as SQLite file", name_);
+    sqlite3_db_config(opened, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    // A file that ends before its last page is read as far as it goes only with a writable schema.
+    for (const char* pragma : {"PRAGMA locking_mode=EXCLUSIVE", "PRAGMA writable_schema=ON"})
+      sqlite3_exec(opened, pragma, nullptr, nullptr, nullptr);
+  }
+
+  void find_topics() {
+    // A view may have rows without end.
+    const Statement tables =
+        prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')");
+    if (!step(tables.get()) || sqlite3_column_int(tables.get(), 0) != 2)
+      throw InputError::format("{}: no ROS 2 bag: lacks the tables `topics` and `messages`", name_);
+    const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+    while (step(topics.get())) {
+      if (column_text(topics.get(), 3) != "cdr") continue;
+      const std::string name(column_text(topics.get(), 1));
+      topic_of_id_[sqlite3_column_int64(topics.get(), 0)] = topic_index(topics_, name, column_text(topics.get(), 2));
+    }
+    if (topics_.empty()) throw InputError::format("{}: no topics in this bag: record it again", name_);
+  }
+
+  /// Row by row, as a damaged table has no totals.
+  void count_messages() {
+    const Statement rows = prepare("SELECT topic_id, timestamp FROM messages ORDER BY id");
+    std::int64_t first = INT64_MAX, last = 0;
+    while (step(rows.get())) {
+      const auto topic = topic_of_id_.find(sqlite3_column_int64(rows.get(), 0));
+      if (topic == topic_of_id_.end()) continue;
+      ++topics_[topic->second].count;
+      const std::int64_t stamp = std::max<std::int64_t>(sqlite3_column_int64(rows.get(), 1), 0);
+      first = std::min(first, stamp);
+      last = std::max(last, stamp);
+    }
+    if (last > first) length_ = Duration(last - first);
+  }
 
   Statement prepare(const char* query) {
     sqlite3_stmt* statement = nullptr;
@@ -121,8 +147,8 @@ class Db3 final : public MessageSource {
 
 }  // namespace
 
-std::unique_ptr<MessageSource> open_db3(const std::filesystem::path& file, Repairs* repairs) {
-  return std::make_unique<Db3>(file, repairs);
+std::unique_ptr<MessageSource> open_db3(const BagFile& file, Repairs* repairs) {
+  return std::make_unique<Db3>(file.path, file.name, repairs);
 }
 
 }  // namespace edged

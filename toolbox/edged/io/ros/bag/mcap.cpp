@@ -4,6 +4,7 @@
 #include "edged/io/ros/bag/mcap.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <zlib.h>
 
 #include <algorithm>
 
@@ -14,6 +15,7 @@ namespace edged {
 namespace {
 
 enum McapOp : std::uint8_t {
+  kMcapNone = 0,
   kMcapHeader = 1,
   kMcapFooter = 2,
   kMcapSchema = 3,
@@ -29,6 +31,8 @@ enum McapOp : std::uint8_t {
 };
 
 constexpr std::uint64_t kMcapRecordHead = 9;  // opcode and length
+constexpr std::uint64_t kMcapMessageHead = 22;
+constexpr std::size_t kMcapChunkHead = 64;  // enough for the opcode and the fields before the records
 
 Timestamp take_mcap_time(ByteReader& reader) {
   const auto ns = reader.number<std::uint64_t>();
@@ -51,28 +55,72 @@ std::string mcap_record(McapOp op, std::string_view content) {
   return record;
 }
 
+/// The fields of a chunk before its records.
+struct McapChunkHead {
+  std::uint64_t bytes;     ///< uncompressed
+  std::uint32_t checksum;  ///< CRC-32 of the uncompressed records; 0 for none
+  std::string_view compression;
+  std::uint64_t packed;
+};
+
+/// record: after its opcode. Nothing if the lengths contradict each other.
+std::optional<McapChunkHead> take_chunk_head(ByteReader& record) {
+  const auto stated = record.number<std::uint64_t>();
+  const std::size_t begin = record.at();
+  record.take(8 + 8);  // first and last time
+  McapChunkHead head{record.number<std::uint64_t>(), record.number<std::uint32_t>(), take_text(record), 0};
+  head.packed = record.number<std::uint64_t>();
+  const std::size_t fields = record.at() - begin;
+  return stated >= fields && stated - fields == head.packed ? std::optional(head) : std::nullopt;
+}
+
+/// A chunk is known by its lengths: the opcode may be damaged.
+std::optional<McapChunkHead> find_chunk_head(ByteSpan bytes) try {
+  ByteReader record(bytes);
+  record.take(1);
+  return take_chunk_head(record);
+} catch (const Damage&) {
+  return std::nullopt;
+}
+
 /// A record is an opcode, a length and its content. Topics that are not of ROS are listed by name only.
 class Mcap final : public RecordSource {
  public:
-  Mcap(const std::filesystem::path& path, Repairs* repairs) : RecordSource(path, kMcapMagic.size(), repairs) {
-    find_topics();
-  }
+  Mcap(const BagFile& file, Repairs* repairs) : RecordSource(file, kMcapMagic.size(), repairs) { find_topics(); }
 
   Wire wire() const override { return wire_; }
 
  private:
   RecordPlace locate(std::uint64_t at) override {
-    const Bytes head = file().read(at, kMcapRecordHead);
+    const Bytes head = file().read(at, kMcapChunkHead);
     ByteReader fields(head);
     const auto op = fields.number<std::uint8_t>();
     RecordPlace place{at, at + kMcapRecordHead, fields.number<std::uint64_t>(), kSkipped};
-    if (op == kMcapDataEnd || op == kMcapFooter) {
+    if ((op == kMcapDataEnd && place.bytes == 4) || (op == kMcapFooter && place.bytes == 20)) {
       place.bytes = file().size() - place.data;  // nothing but the summary follows
       return place;
     }
-    if (place.bytes > kLargestRecord) throw Damage("record too long");
-    if (op <= kMcapChunk) place.kind = op == kMcapChunk ? kChunk : kPlain;
+    const auto chunk = find_chunk_head(head);
+    place.closed = chunk.has_value();
+    if (chunk) note_compression(chunk->compression);
+    if (!place.closed && (op == kMcapNone || op == kMcapFooter || op == kMcapChunk)) throw Damage("no record");
+    if (place.closed || op < kMcapChunk) place.kind = place.closed ? kChunk : kPlain;
+    if (place.bytes > (place.kind == kSkipped ? file().size() : kLargestRecord)) throw Damage("record too long");
     return place;
+  }
+
+  /// A chunk, or a message, which a damaged chunk without compression may hold.
+  bool begins_record(ByteSpan bytes) const override try {
+    ByteReader record(bytes);
+    const auto op = record.number<std::uint8_t>();
+    if (op == kMcapChunk) return find_chunk_head(bytes).has_value();
+    if (op != kMcapMessage || packed()) return false;
+    if (record.number<std::uint64_t>() < kMcapMessageHead) return false;
+    if (!topic_of_channel_.contains(record.number<std::uint16_t>())) return false;
+    record.take(4);  // sequence
+    return to_ns(take_mcap_time(record)) > 0;
+  } catch (const Damage&) {
+    return false;
   }
 
   /// Schemas, channels and counts lie between the end of the data and the footer, which has a fixed size.
@@ -83,7 +131,13 @@ class Mcap final : public RecordSource {
     const Bytes tail = file().read(end, kFooterBytes);
     ByteReader footer(tail);
     if (footer.number<std::uint8_t>() != kMcapFooter || footer.number<std::uint64_t>() != 20) throw Damage("no footer");
-    read_index_at(footer.number<std::uint64_t>(), end);
+    const auto begin = footer.number<std::uint64_t>();
+    footer.take(8);  // offset of a table of the summary
+    const std::size_t after = footer.at();
+    const auto checksum = footer.number<std::uint32_t>();
+    const Bytes summary = index_at(begin, end + after);  // as far as its checksum goes
+    if (checksum != 0 && crc32_z(0, summary.data(), summary.size()) != checksum) throw Damage("checksum differs");
+    if (begin < end) take_index(ByteSpan(summary).first(static_cast<std::size_t>(end - begin)));
     if (!counted_) throw Damage("no counts");
   }
 
@@ -112,21 +166,32 @@ class Mcap final : public RecordSource {
     const auto id = record.number<std::uint16_t>();
     const auto schema = schemas_.find(record.number<std::uint16_t>());
     const std::string_view topic = take_text(record), encoding = take_text(record);
-    if (schema == schemas_.end() || topic_of_channel_.contains(id)) return;
+    if (topic_of_channel_.contains(id)) return;
+    if (schema == schemas_.end()) {
+      topic_of_channel_[id] = std::nullopt;
+      return;
+    }
     const auto& [type, definition] = schema->second;
     if (encoding == "ros1") wire_ = Wire::Ros1;
     const bool ros = encoding == "cdr" || encoding == "ros1";
     topic_of_channel_[id] = describe_topic(topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
   }
 
+  std::optional<std::size_t> topic_of(std::uint16_t channel) const {
+    const auto found = topic_of_channel_.find(channel);
+    return found == topic_of_channel_.end() ? std::nullopt : found->second;
+  }
+
   std::optional<Message> take_message(ByteReader& record) {
-    const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+    const auto channel = record.number<std::uint16_t>();
     record.take(4);  // sequence
     const Timestamp t = take_mcap_time(record);
-    record.take(8);                                               // time of publication
-    if (channel == topic_of_channel_.end()) return std::nullopt;  // of no known type
+    record.take(8);  // time of publication
+    if (!topic_of_channel_.contains(channel)) repair("message of an unknown topic", fmt::format("channel {}", channel));
+    const auto topic = topic_of(channel);
+    if (!topic) return std::nullopt;
     extend(t);
-    return Message{channel->second, record.take(record.left())};
+    return Message{*topic, record.take(record.left())};
   }
 
   void take_statistics(ByteReader& record) {
@@ -135,9 +200,9 @@ class Mcap final : public RecordSource {
     extend(take_mcap_time(record));
     extend(take_mcap_time(record));
     for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
-      const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
+      const auto topic = topic_of(record.number<std::uint16_t>());
       const auto count = record.number<std::uint64_t>();
-      if (channel != topic_of_channel_.end()) count_messages(channel->second, count);
+      if (topic) count_messages(*topic, count);
     }
   }
 
@@ -146,20 +211,18 @@ class Mcap final : public RecordSource {
     std::vector<std::size_t>& topics = index_[record.number<std::uint64_t>()];
     record.take(8);  // length of the chunk
     for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
-      const auto channel = topic_of_channel_.find(record.number<std::uint16_t>());
-      record.take(8);                                                 // offset of its message index
-      if (channel == topic_of_channel_.end()) return topics.clear();  // the channel may be described later
-      topics.push_back(channel->second);
+      const auto topic = topic_of(record.number<std::uint16_t>());
+      record.take(8);                     // offset of its message index
+      if (!topic) return topics.clear();  // the channel may be described later
+      topics.push_back(*topic);
     }
   }
 
   PackedChunk open_chunk(ByteReader record) override {
-    record.take(kMcapRecordHead + 8 + 8);  // first and last time
-    const auto bytes = record.number<std::uint64_t>();
-    record.take(4);  // checksum: optional, and damage of a chunk is detected without it
-    const std::string_view method = take_text(record);
-    const auto packed = record.number<std::uint64_t>();
-    return {method, bytes, record.take(static_cast<std::size_t>(std::min<std::uint64_t>(packed, record.left())))};
+    const bool sound = record.number<std::uint8_t>() == kMcapChunk;
+    const auto head = take_chunk_head(record);
+    if (!head) throw Damage("no chunk");
+    return {head->compression, head->bytes, record.take(record.left()), head->checksum, sound};
   }
 
   struct Schema {
@@ -168,12 +231,12 @@ class Mcap final : public RecordSource {
   Wire wire_ = Wire::Cdr;
   bool counted_ = false;  ///< the index holds statistics
   std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, std::size_t> topic_of_channel_;
+  std::map<std::uint16_t, std::optional<std::size_t>> topic_of_channel_;  ///< nothing: of no known type
 };
 
 }  // namespace
 
-std::unique_ptr<MessageSource> open_mcap(const std::filesystem::path& file, Repairs* repairs) {
+std::unique_ptr<MessageSource> open_mcap(const BagFile& file, Repairs* repairs) {
   return std::make_unique<Mcap>(file, repairs);
 }
 
@@ -217,7 +280,9 @@ std::string McapWriter::message_record(std::size_t topic, Timestamp t, std::stri
 
 std::string McapWriter::chunk_record(const ChunkInfo& chunk, std::string_view packed) const {
   std::string content;
-  const std::uint32_t checksum = 0;  // none, as the compression has one
+  // A compression has its own checksum.
+  const auto checksum =
+      options_.compression.empty() ? static_cast<std::uint32_t>(crc32_z(0, as_bytes(packed).data(), packed.size())) : 0;
   append_numbers(content, mcap_time(chunk.begin), mcap_time(chunk.end), chunk.unpacked, checksum);
   append_sized(content, options_.compression);
   append_number(content, chunk.packed);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/io/ros/bag/message_records.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 
 #include "edged/core/check.hpp"
@@ -19,9 +21,12 @@ void RecordSource::find_topics() {
   if (topics_.empty()) throw InputError::format("{}: no messages in this bag: record it again", name_);
 }
 
-void RecordSource::read_index_at(std::uint64_t begin, std::uint64_t end) {
+Bytes RecordSource::index_at(std::uint64_t begin, std::uint64_t end) {
   if (begin < first_record() || begin >= end || end - begin > kLargestRecord) throw Damage("no index");
-  const Bytes index = file().read(begin, static_cast<std::size_t>(end - begin));
+  return file().read(begin, static_cast<std::size_t>(end - begin));
+}
+
+void RecordSource::take_index(ByteSpan index) {
   for (ByteReader records(index); records.left() > 0;) take_record(records);
 }
 
@@ -42,19 +47,31 @@ std::optional<Message> RecordSource::read(std::optional<std::size_t> only) {
   while (reader_.left() > 0 || load_next_record(only)) {
     try {
       const auto message = take_record(reader_);
-      if (message && (!only || message->topic == *only)) return message;
+      if (!message || (only && message->topic != *only)) continue;
+      ++read_[message->topic];
+      return message;
     } catch (const Damage& damage) {
       repair("chunk damaged", fmt::format("chunk before byte {}: {}", at(), damage.what()));
       load({});
     }
   }
+  if (!only && !std::exchange(compared_, true)) compare_counts();
   return std::nullopt;
 }
 
+/// Shows what no check of a record has found.
+void RecordSource::compare_counts() {
+  for (std::size_t i = 0; i < topics_.size(); ++i)
+    if (const Topic& topic = topics_[i]; topic.count > read_[i])
+      repair("message missing", fmt::format("{}: {} of {} messages", topic.name, read_[i], topic.count),
+             topic.count - read_[i]);
+}
+
 bool RecordSource::load_next_record(std::optional<std::size_t> only) {
+  load({});  // one chunk at a time is in memory
   while (const auto place = next_place()) {
-    if (place->kind == kSkipped || (only && place->kind == kChunk && !may_hold(*place, *only))) continue;
     if (place->end() > file().size()) repair("cut", "the file ends within a record");
+    if (place->kind == kSkipped || (only && place->kind == kChunk && !may_hold(*place, *only))) continue;
     try {
       Bytes record = bytes_of(*place);
       load(place->kind == kChunk ? unpack(*place, record) : std::move(record));
@@ -76,10 +93,13 @@ bool RecordSource::may_hold(const RecordPlace& chunk, std::size_t topic) const {
 Bytes RecordSource::unpack(const RecordPlace& chunk, ByteSpan record) {
   const PackedChunk parts = open_chunk(ByteReader(record));
   if (parts.bytes > kLargestRecord) throw Damage("chunk too long");
+  if (!parts.sound) repair("record damaged", fmt::format("byte {}: opcode or length of a chunk", chunk.begin));
   Decompressed records = decompress(parts.compression, parts.packed, static_cast<std::size_t>(parts.bytes));
-  const bool cut = chunk.end() > file().size();
-  if ((!records.whole || records.bytes.size() != parts.bytes) && !cut)
+  if (chunk.end() > file().size()) return std::move(records.bytes);
+  if (!records.whole || records.bytes.size() != parts.bytes)
     repair("chunk damaged", fmt::format("chunk at byte {} is not whole", chunk.begin));
+  else if (parts.checksum != 0 && crc32_z(0, records.bytes.data(), records.bytes.size()) != parts.checksum)
+    throw Damage("the checksum of the chunk differs");
   return std::move(records.bytes);
 }
 
@@ -97,8 +117,8 @@ void RecordSource::extend(Timestamp t) {
   last_ = std::max(last_, t);
 }
 
-void RecordSource::repair(const std::string& kind, const std::string& detail) {
-  if (repairs_) repairs_->add("bag: " + kind, name_ + ": " + detail);
+void RecordSource::repair(const std::string& kind, const std::string& detail, std::size_t count) {
+  if (repairs_) repairs_->add("bag: " + kind, name_ + ": " + detail, count);
 }
 
 void RecordWriter::write(std::size_t topic, Timestamp t, std::string_view message) {

@@ -23,19 +23,19 @@ class RecordSource : public MessageSource, protected RecordFile {
   std::optional<Message> read(std::optional<std::size_t> only) final;
 
  protected:
-  static constexpr std::uint64_t kLargestRecord = 1U << 30U;  ///< longer ones are damage; chunks of 768 kB are usual
+  static constexpr std::uint64_t kLargestRecord = 1U << 28U;  ///< longer ones are damage; chunks of 768 kB are usual
   enum Kind : std::uint32_t { kSkipped, kPlain, kChunk };     ///< kPlain: read by take_record()
 
   /// first_record: its offset, after the magic bytes.
-  RecordSource(const std::filesystem::path& file, std::uint64_t first_record, Repairs* repairs)
-      : RecordFile(BinaryFile(file), first_record), name_(file.string()), repairs_(repairs) {}
+  RecordSource(const BagFile& file, std::uint64_t first_record, Repairs* repairs)
+      : RecordFile(BinaryFile(file.path), first_record), name_(file.name), repairs_(repairs) {}
 
   /// Reads topics, counts and times. To be called last in a constructor. Throws InputError without messages.
   void find_topics();
 
   // The description of a format, beside locate(). Each function may throw Damage.
 
-  /// Reads the records of the index by read_index_at(), which describe topics, counts and chunks.
+  /// Reads the records of the index by take_index(), which describe topics, counts and chunks.
   virtual void read_index() = 0;
   /// Discards the descriptions from the records so far.
   virtual void forget() = 0;
@@ -43,19 +43,26 @@ class RecordSource : public MessageSource, protected RecordFile {
   virtual std::optional<Message> take_record(ByteReader& records) = 0;
   struct PackedChunk {
     std::string_view compression;
-    std::uint64_t bytes;  ///< uncompressed
-    ByteSpan packed;      ///< as far as it is in the file
+    std::uint64_t bytes;     ///< uncompressed
+    ByteSpan packed;         ///< as far as it is in the file
+    std::uint32_t checksum;  ///< CRC-32 of the uncompressed records; 0 for none
+    bool sound;              ///< its opcode and lengths agree
   };
   /// The parts of a whole chunk record, whose data may be cut.
   virtual PackedChunk open_chunk(ByteReader record) = 0;
 
-  void read_index_at(std::uint64_t begin, std::uint64_t end);
+  Bytes index_at(std::uint64_t begin, std::uint64_t end);
+  void take_index(ByteSpan index);
   std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition) {
     return topic_index(topics_, name, type, definition);
   }
+  /// Once a compressed chunk was located, only chunks are searched: compressed data contain pieces of records.
+  void note_compression(std::string_view method) { packed_ = packed_ || (!method.empty() && method != "none"); }
+  bool packed() const { return packed_; }
   void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
   /// Extends the time span of the messages.
   void extend(Timestamp t);
+  void repair(const std::string& kind, const std::string& detail, std::size_t count = 1);
 
  private:
   void count_damage(std::uint64_t at, const std::string& reason, std::optional<std::uint64_t> next) final;
@@ -64,11 +71,14 @@ class RecordSource : public MessageSource, protected RecordFile {
   bool load_next_record(std::optional<std::size_t> only);
   bool may_hold(const RecordPlace& chunk, std::size_t topic) const;
   Bytes unpack(const RecordPlace& chunk, ByteSpan record);
-  void repair(const std::string& kind, const std::string& detail);
+  void compare_counts();
 
   std::string name_;
   Repairs* repairs_;
   std::vector<Topic> topics_;
+  std::map<std::size_t, std::size_t> read_;  ///< number of messages of each topic
+  bool packed_ = false;
+  bool compared_ = false;  ///< with the numbers of the index
   Timestamp first_ = Timestamp::max(), last_ = Timestamp::min();
   Bytes records_;  ///< the records being read
   ByteReader reader_{ByteSpan()};

@@ -3,6 +3,7 @@
 // The interfaces for reading and writing the messages of a container: ROS 1 bag, SQLite (reading only) or MCAP.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,12 @@
 #include "edged/time.hpp"
 
 namespace edged {
+
+/// A file, and the name of the one that it was unpacked from.
+struct BagFile {
+  std::filesystem::path path;
+  std::string name;
+};
 
 struct Message {
   std::size_t topic = 0;  ///< index of topics()

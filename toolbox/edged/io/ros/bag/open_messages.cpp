@@ -52,21 +52,21 @@ class ScratchFolder {
   fs::path path_;
 };
 
-std::unique_ptr<MessageSource> open_container(const fs::path& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_container(const BagFile& file, Repairs* repairs);
 
 /// Decompresses a file into the folder of temporary files (TMPDIR) and opens it there. It is then unlinked, so it
 /// disappears with the source.
-std::unique_ptr<MessageSource> open_packed_file(const fs::path& file, Repairs* repairs) {
+std::unique_ptr<MessageSource> open_packed_file(const BagFile& file, Repairs* repairs) {
   const ScratchFolder scratch;
-  const fs::path unpacked = scratch.path() / file.stem();
-  if (!decompress_zstd_file(file, unpacked) && repairs)
-    repairs->add("bag: cut", file.string() + ": the compressed file is not whole");
-  return open_container(unpacked, repairs);
+  const fs::path unpacked = scratch.path() / file.path.stem();
+  if (!decompress_zstd_file(file.path, unpacked) && repairs)
+    repairs->add("bag: cut", file.name + ": the compressed file is not whole");
+  return open_container({unpacked, file.name}, repairs);
 }
 
-std::unique_ptr<MessageSource> open_container(const fs::path& file, Repairs* repairs) {
+std::unique_ptr<MessageSource> open_container(const BagFile& file, Repairs* repairs) {
   constexpr std::size_t kContainerHeadBytes = 16;
-  switch (container_of(BinaryFile(file).read(0, kContainerHeadBytes))) {
+  switch (container_of(BinaryFile(file.path).read(0, kContainerHeadBytes))) {
     case Container::Bag:
       return open_ros1_bag(file, repairs);
     case Container::Mcap:
@@ -78,7 +78,19 @@ std::unique_ptr<MessageSource> open_container(const fs::path& file, Repairs* rep
     case Container::None:
       break;
   }
-  throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.string());
+  throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.name);
+}
+
+std::unique_ptr<MessageSource> open_part(const fs::path& file, Repairs* repairs) {
+  return open_container({file, file.string()}, repairs);
+}
+
+/// Nothing for a part of several that cannot be read.
+std::unique_ptr<MessageSource> try_part(const fs::path& file, Repairs* repairs) try {
+  return open_part(file, repairs);
+} catch (const InputError& error) {
+  if (repairs) repairs->add("bag: part unreadable", error.what());
+  return nullptr;
 }
 
 /// The messages of several files, one file after the other. Messages that are compressed one by one are decompressed.
@@ -172,26 +184,29 @@ bool is_bag_folder(const fs::path& folder) { return !bag_parts(folder).empty(); 
 
 std::unique_ptr<MessageSource> open_messages(const fs::path& path, Repairs* repairs) {
   const bool folder = fs::is_directory(path);
-  std::vector<fs::path> files = folder ? bag_parts(path) : split_bag_parts(path);
+  const std::vector<fs::path> files = folder ? bag_parts(path) : split_bag_parts(path);
   const std::vector<std::string> missing =
       folder || files.size() > 1 ? missing_parts(files) : std::vector<std::string>();
-  std::vector<std::unique_ptr<MessageSource>> parts;
+  std::vector<std::pair<fs::path, std::unique_ptr<MessageSource>>> parts;
   for (const fs::path& file : files) {
-    parts.push_back(open_container(file, repairs));
-    if (folder || parts.size() == 1 || !missing.empty() || follows(*parts.back(), *parts[parts.size() - 2])) continue;
+    auto part = files.size() > 1 ? try_part(file, repairs) : open_part(file, repairs);
+    if (!part) continue;
+    const bool apart = !folder && !parts.empty() && missing.empty() && !follows(*part, *parts.back().second);
+    parts.emplace_back(file, std::move(part));
+    if (!apart) continue;
     if (repairs)
       spdlog::warn(
           fmt::format("{}: does not follow the part before it: {} is read alone", file.string(), path.string()));
     parts.clear();
-    parts.push_back(open_container(path, repairs));
-    files = {path};
+    parts.emplace_back(path, open_part(path, repairs));
     break;
   }
+  if (parts.empty()) parts.emplace_back(files.front(), open_part(files.front(), repairs));  // throws the reason
   if (!missing.empty() && repairs)
     repairs->add("bag: part missing",
                  fmt::format("{}: lacks {}; the others are read", path.string(), fmt::join(missing, ", ")));
   auto messages = std::make_unique<BagMessages>(repairs);
-  for (std::size_t i = 0; i < parts.size(); ++i) messages->add(files[i], std::move(parts[i]));
+  for (auto& [file, part] : parts) messages->add(file, std::move(part));
   return messages;
 }
 

@@ -20,9 +20,9 @@ std::unique_ptr<MessageSource> open_messages(const std::filesystem::path& path, 
 
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";  // at both ends
-std::unique_ptr<MessageSource> open_ros1_bag(const std::filesystem::path& file, Repairs* repairs);
-std::unique_ptr<MessageSource> open_mcap(const std::filesystem::path& file, Repairs* repairs);
-std::unique_ptr<MessageSource> open_db3(const std::filesystem::path& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_ros1_bag(const BagFile& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_mcap(const BagFile& file, Repairs* repairs);
+std::unique_ptr<MessageSource> open_db3(const BagFile& file, Repairs* repairs);
 
 /// A new ROS 1 bag, whose chunks are compressed by "none" or "lz4". MCAP: McapWriter.
 std::unique_ptr<MessageSink> create_ros1_bag(const std::filesystem::path& file,
