@@ -24,7 +24,7 @@ CONSTANTS = re.compile(r"^constexpr [^;]*;", re.MULTILINE)
 CONSTANT = re.compile(r"(?<!= )\b(k[A-Z]\w*)(?= = |\(|\{|\[)")
 CLASS = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?(?: : [^{;]*)? \{", re.MULTILINE)
 # W is the public API's name of the map frame: sources of the method say O or M, but where they meet that API.
-WORLD, WORLD_EDGES = re.compile(r"\bT_W_\w+"), {"output_frame", "state_prediction"}
+WORLD, WORLD_EDGES = re.compile(r"\bT_W_\w+"), {"output_frame", "state_prediction", "step"}
 # What holds functions. A brace after '=' outside a function opens a list of values; every other one there a function.
 CONTAINER = re.compile(r"\s*(template\s*<.*>\s*)?(namespace|class|struct|union|enum|extern)\b", re.DOTALL)
 NOT_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|^\s*\#[^\n]*|R"\(.*?\)"|"(?:\\.|[^"\\])*"|(?<![0-9A-Fa-f])'(?:\\.|[^'\\])'""",

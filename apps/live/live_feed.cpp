@@ -58,7 +58,7 @@ nlohmann::ordered_json progress_json(const RunProgress& progress) {
 
 }  // namespace
 
-LiveFeed::LiveFeed(OutputFrame frame, const LivePoints& dense)
+LiveFeed::LiveFeed(std::string frame, const LivePoints& dense)
     : frame_(std::move(frame)), dense_(dense), angles_(Eigen::Vector3d::Constant(kUnknown)) {
   newest_.values.assign(live_columns().size(), kUnknown);
 }
@@ -70,7 +70,7 @@ LiveFeed::Row LiveFeed::row_of(const Step& step, const PacketPace& pace) {
   };
   const bool tracking = is_tracking(step.status);
   if (tracking) angles_ = angles_deg(step.state.T_W_B, angles_);
-  put(frame_({step.t, step.state.T_W_B}).T.translation(), tracking);
+  put(step.pose_of(frame_).T.translation(), tracking);
   put(angles_, tracking);
   const std::vector<double> numbers = plot_numbers(step, pace);
   row.values.insert(row.values.end(), numbers.begin(), numbers.end());

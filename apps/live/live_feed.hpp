@@ -17,7 +17,6 @@
 
 #include "common/even_sample.hpp"
 #include "common/step_numbers.hpp"
-#include "edged/camera/output_frame.hpp"
 #include "edged/step.hpp"
 #include "outputs/snapshots.hpp"
 #include "run/run_statistics.hpp"
@@ -46,7 +45,7 @@ class LiveFeed {
   };
 
   /// Positions are those of `frame`, as in the trajectory files. dense: lives longer.
-  LiveFeed(OutputFrame frame, const LivePoints& dense);
+  LiveFeed(std::string frame, const LivePoints& dense);
 
   void add(const Step& step, RunProgress progress, const Snapshots& snapshots);
   /// The final numbers, as the last measurements are after the last step.
@@ -91,7 +90,7 @@ class LiveFeed {
   Present present(Place& place) const;
   static nlohmann::ordered_json columns(const std::vector<Row>& rows);
 
-  OutputFrame frame_;
+  std::string frame_;
   const LivePoints& dense_;
   std::atomic<std::size_t> viewers_ = 0;
   std::optional<Timestamp> origin_;  ///< set before there are rows or changes, and no more afterwards

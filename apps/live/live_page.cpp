@@ -77,7 +77,7 @@ nlohmann::ordered_json about_run(const RunContext& run, const LivePoints& points
 /// A server in threads of its own. Calls by the thread of the run do not block, whatever browsers do, except `finish`.
 class LivePage {
  public:
-  LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+  LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, std::string frame,
            const LivePoints& dense);
   ~LivePage();
   /// Notifies the viewers that the run is over. They get report.html of the folder in place of the live page; returns
@@ -116,7 +116,7 @@ class LivePage {
   std::jthread thread_;  ///< last: it uses the others
 };
 
-LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, OutputFrame frame,
+LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, std::string frame,
                    const LivePoints& dense)
     : feed(std::move(frame), dense), page_(live_report_page(about)) {
   http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
@@ -278,8 +278,8 @@ class ServedPage : public RunObserver {
       : run_(run),
         points_(run.products.get<LivePoints>()),
         snapshots_(run.products.get<Snapshots>()),
-        page_(*parse_serve_address(run.options.outputs.get<ServeOptions>().address), about_run(run, points_), run.frame,
-              points_) {
+        page_(*parse_serve_address(run.options.outputs.get<ServeOptions>().address), about_run(run, points_),
+              run.frame.name(), points_) {
     points_.watched = true;
   }
   const char* stage() const override { return "serve"; }

@@ -28,6 +28,7 @@ class LiveRun : public ::testing::Test {
       if (made < 5) step.waiting_for = fmt::format("parallax, {} px of 5", made);
       step.state.T_W_B = SE3(Eigen::Quaterniond::Identity(), {1e-3 * made, 0.0, 0.0});
       step.keyframe = true;
+      step.rig = kHead;
       step.landmarks = {{static_cast<FeatureId>(made), Eigen::Vector3d(2.0, made, 0.0)}};
       step.cameras = {
           {.name = "events", .modality = Modality::Events, .image = cv::Mat(180, 240, CV_8UC1, cv::Scalar(99))}};
@@ -43,7 +44,7 @@ class LiveRun : public ::testing::Test {
   RunStatistics statistics;
   Snapshots snapshots;
   LivePoints dense;
-  LiveFeed feed{OutputFrame(kHead, "events"), dense};
+  LiveFeed feed{"events", dense};
 };
 
 TEST_F(LiveRun, TellsEachViewerWhatItDoesNotKnowYet) {

@@ -64,10 +64,7 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
 void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
                             const std::vector<std::string>& comments) {
   TrajectoryWriter tum(folder / "trajectory_final.tum", TrajectoryFormat::Tum, comments);
-  // The causal poses of a camera are read from states.csv, where each is normalized again: so are these, to be equal
-  // where nothing was corrected.
-  const bool again = frame.name() != "body";
-  for (const auto& [t, T] : known.poses) tum.add(frame({t, again ? SE3(T.rotation(), T.translation()) : T}));
+  for (const StampedPose& pose : known.poses) tum.add(frame(pose));
   tum.flush();
   write_file(folder / "keyframes.csv", keyframes_csv(known.keyframes));
   write_file(folder / "map.ply", map_ply(known.keyframes));

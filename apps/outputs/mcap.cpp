@@ -13,8 +13,6 @@
 #include "common/pictures.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/camera/undistort.hpp"
-#include "report/report_path.hpp"
-#include "report/states_table.hpp"
 #include "run/run_context.hpp"
 
 namespace edged {
@@ -131,13 +129,12 @@ class McapFile : public RunObserver {
  private:
   /// The truth over the time of the run, in the world of the estimate.
   Trajectory true_body(const RunEnd& end) const {
-    const Rig rig = run_.estimated_rig();
-    const Trajectory poses = end.in_map(body_poses(read_states(run_.folder)));
-    const AlignedPath path = align_with_truth(poses, {}, rig, run_.frame.name(), end.truth, {});
-    const OutputFrame sensor(rig, path.frame);
-    const SE3 T_estimate_truth = path.alignment.T.inverse();
     Trajectory body;
-    for (const StampedPose& pose : path.true_path) body.push_back(sensor.to_body({pose.t, T_estimate_truth * pose.T}));
+    if (!end.summary.truth.evaluation) return body;
+    const OutputFrame sensor(run_.estimated_rig(), end.truth->frame);
+    const SE3 T_estimate_truth = end.summary.truth.evaluation->alignment.T.inverse();
+    for (const StampedPose& pose : snapshots_.part_of_run(end.truth->trajectory))
+      body.push_back(sensor.to_body({pose.t, T_estimate_truth * pose.T}));
     return body;
   }
 

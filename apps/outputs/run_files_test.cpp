@@ -85,7 +85,7 @@ TEST_F(RunFolder, ReplacesAnEarlierRunAndNothingElseWhereAskedTo) {
 TEST_F(RunFolder, HoldsPosesOfGoodAndDegradedPacketsAndALineForEveryPacket) {
   make_run_folder(folder);
   {
-    RunWriter writer(folder, OutputFrame({}, "body"), {"first comment"});
+    RunWriter writer(folder, "body", {"first comment"});
     Step step;
     for (const TrackingStatus status :
          {TrackingStatus::Initializing, TrackingStatus::Good, TrackingStatus::Degraded, TrackingStatus::Lost}) {
@@ -111,7 +111,7 @@ TEST_F(RunFolder, HasTheAttitudeWhereThereIsNoPose) {
   Step step;
   step.attitude = {so3::exp({0.1, 0.2, 0.3}), 1e-4 * Eigen::Matrix3d::Identity()};
   {
-    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    RunWriter writer(folder, "body", {});
     writer.add(step);
   }
   const StatesTable states = read_states(folder);
@@ -125,7 +125,7 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
   make_run_folder(folder);
   Trajectory written;
   {
-    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    RunWriter writer(folder, "body", {});
     Step step;
     for (int i = 0; i < 20; ++i) {
       step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
@@ -146,14 +146,14 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
 
 TEST_F(RunFolder, HasAHeadingThatReadsBeforeAnyPacketHasCome) {
   make_run_folder(folder);
-  const RunWriter writer(folder, OutputFrame({}, "body"), {});
+  const RunWriter writer(folder, "body", {});
   EXPECT_TRUE(read_states(folder).t.empty());
 }
 
 TEST_F(RunFolder, GivesThePaceOfEachPacketBackButOfThoseThatAKillHasCut) {
   make_run_folder(folder);
   {
-    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    RunWriter writer(folder, "body", {});
     TableFile pace(folder / "pace.csv", pace_heading());
     Step step;
     for (int i = 0; i < 3; ++i) {
@@ -184,7 +184,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
   make_run_folder(folder);
   CovarianceSamples samples;
   {
-    RunWriter writer(folder, OutputFrame({}, "body"), {});
+    RunWriter writer(folder, "body", {});
     Step step;
     for (int i = 0; i < 20; ++i) {
       step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
@@ -207,26 +207,6 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
     EXPECT_EQ(read[i].covariance.rotation, samples.all()[i].covariance.rotation);
     EXPECT_EQ(read[i].covariance.velocity, samples.all()[i].covariance.velocity);
   }
-}
-
-TEST(WithEstimated, GivesAllCamerasBehindALensItsCalibration) {
-  Calibration given;
-  const RigCamera events{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()};
-  RigCamera frames = events, other = events;
-  frames.name = "frames", frames.modality = Modality::Frames;
-  other.name = "other", other.T_B_C.translation().x() = 0.1;
-  given.rig.cameras = {events, frames, other};
-  Rig found;
-  found.cameras = {frames};
-  found.cameras[0].model = CameraModel(240, 180, 201, 202, 121, 91);
-  found.cameras[0].T_B_C.translation().z() = 0.02;
-  found.cameras[0].time_offset = std::chrono::milliseconds(3);
-  const Rig rig = with_estimated(given, found).rig;
-  EXPECT_TRUE(is_same_lens(rig.camera("events"), found.cameras[0]));
-  EXPECT_TRUE(is_same_lens(rig.camera("frames"), found.cameras[0]));
-  EXPECT_TRUE(is_same_lens(rig.camera("other"), other));
-  EXPECT_EQ(rig.camera("events").time_offset, Duration(0));
-  EXPECT_EQ(rig.camera("frames").time_offset, std::chrono::milliseconds(3));
 }
 
 TEST(TimingJson, ListsEveryStage) {

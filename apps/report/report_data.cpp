@@ -17,6 +17,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/path_length.hpp"
 #include "edged/eval/evaluation_json.hpp"
+#include "edged/io/calibration.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 #include "report/point_cloud.hpp"
 #include "report/report_rows.hpp"
@@ -107,13 +108,15 @@ Json map_keyframes_json(const LoadedRun& run, Timestamp origin) {
   return json;
 }
 
-/// What came before the body was found in the map of --map is in a frame of its own, and counts for no error.
-void leave_out_before_map(const LoadedRun& run, Trajectory& body, std::vector<std::size_t>& rows) {
-  if (run.album.is_null() || run.album.value("in_map_since_ns", Json()).is_null()) return;
-  const Timestamp since = timestamp_from_ns(run.album["in_map_since_ns"].get<std::int64_t>());
-  const auto first = std::ranges::lower_bound(body, since, {}, &StampedPose::t);
-  rows.erase(rows.begin(), rows.begin() + (first - body.begin()));
-  body.erase(body.begin(), first);
+/// The causal poses. What came before the body was found in the map of --map is in a frame of its own, and counts for
+/// no error.
+CausalPoses poses_in_map(const LoadedRun& run, const OutputFrame& frame) {
+  HeldWarnings said_by_the_run;
+  CausalPoses poses = causal_poses(run.path, run.states, output_frame(run), frame);
+  said_by_the_run.take();
+  if (!run.album.is_null() && !run.album.value("in_map_since_ns", Json()).is_null())
+    poses.begin_at(timestamp_from_ns(run.album["in_map_since_ns"].get<std::int64_t>()));
+  return poses;
 }
 
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
@@ -141,30 +144,26 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
     }
     run.truth = GroundTruth{read_trajectory(options.truth), output_frame(run)};
   }
-  std::vector<std::size_t> rows;
-  Trajectory body = body_poses(run.states, &rows);
-  leave_out_before_map(run, body, rows);
+  const OutputFrame frame(rig_of(run), run.truth ? run.truth->frame : output_frame(run));
   run.poses =
-      align_with_truth(body, covariance_samples_of(run.states), rig_of(run), output_frame(run), run.truth, options.how);
-  run.poses.rows = rows;
+      align_with_truth(poses_in_map(run, frame), covariance_samples_of(run.states), frame, run.truth, options.how);
   return run;
 }
 
 /// Poses of another program, for the sensor of the run's ground truth. With that run's calibration.
 LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportOptions& options) {
   LoadedRun run{file, {}, {}, {}, {}, std::nullopt, std::nullopt, std::nullopt, {}};
-  Trajectory body = read_trajectory(file);
-  const Rig rig = beside ? rig_of(*beside) : Rig{};
-  const std::string frame = beside ? beside->poses.frame : "body";
-  for (StampedPose& pose : body) pose = OutputFrame(rig, frame).to_body(pose);
-  if (beside) run.truth = beside->truth;
-  if (!options.truth.empty()) run.truth = GroundTruth{read_trajectory(options.truth), frame};
-  run.poses = align_with_truth(body, {}, rig, frame, run.truth, options.how);
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    run.states.t.push_back(body[i].t);
+  const OutputFrame frame(beside ? rig_of(*beside) : Rig{}, beside ? beside->poses.frame : "body");
+  CausalPoses poses;
+  for (const StampedPose& pose : poses.shown = read_trajectory(file)) {
+    poses.body.push_back(frame.to_body(pose));
+    poses.rows.push_back(poses.rows.size());
+    run.states.t.push_back(poses.body.back().t);
     run.states.status.push_back(TrackingStatus::Good);
-    run.poses.rows.push_back(i);
   }
+  if (beside) run.truth = beside->truth;
+  if (!options.truth.empty()) run.truth = GroundTruth{read_trajectory(options.truth), frame.name()};
+  run.poses = align_with_truth(poses, {}, frame, run.truth, options.how);
   return run;
 }
 

@@ -2,19 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report_path.hpp"
 
+#include <algorithm>
 #include <limits>
 
-#include "edged/camera/output_frame.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 
 namespace edged {
 namespace {
 
 void add_truth(AlignedPath& path, const GroundTruth& truth, const OutputFrame& frame, const Association& association) {
   for (std::size_t i = 0; i < path.shown.size(); ++i) {
+    const SE3 T_X_B = path.shown[i].T.inverse() * path.body[i].T;
     path.shown[i].T = path.alignment * path.shown[i].T;
-    path.body[i].T = frame.to_body(path.shown[i]).T;
+    path.body[i].T = path.shown[i].T * T_X_B;
   }
   std::size_t i = 0;  // of the pose that is nearest in time
   for (const PosePair& pair : association.pairs) {
@@ -33,25 +35,41 @@ void add_truth(AlignedPath& path, const GroundTruth& truth, const OutputFrame& f
 
 }  // namespace
 
-Rig rig_for_poses(const Rig& given, Rig found) {
-  for (RigCamera& camera : found.cameras)
-    if (camera.modality == Modality::Events) camera.time_offset = given.camera(camera.name).time_offset;
-  return found;
+void CausalPoses::begin_at(Timestamp since) {
+  const auto first = std::ranges::lower_bound(body, since, {}, &StampedPose::t) - body.begin();
+  body.erase(body.begin(), body.begin() + first);
+  shown.erase(shown.begin(), shown.begin() + first);
+  rows.erase(rows.begin(), rows.begin() + first);
 }
 
-AlignedPath align_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
-                             const std::string& frame_name, const std::optional<GroundTruth>& truth,
+CausalPoses causal_poses(const std::filesystem::path& folder, const StatesTable& states, const std::string& written,
+                         const OutputFrame& shown) {
+  CausalPoses poses;
+  poses.body = body_poses(states, &poses.rows);
+  try {
+    const bool of_camera = written != "body" && shown.name() == written;
+    poses.shown = of_camera ? read_tum(folder / "trajectory.tum") : shown(poses.body);
+  } catch (const InputError&) {  // not in time order, as a clock was set back: not compared either
+    poses.shown = shown(poses.body);
+  }
+  const std::size_t complete = std::min(poses.body.size(), poses.shown.size());  // a kill may come between two files
+  poses.body.resize(complete);
+  poses.shown.resize(complete);
+  poses.rows.resize(complete);
+  return poses;
+}
+
+AlignedPath align_with_truth(const CausalPoses& poses, const std::vector<StateCovarianceSample>& samples,
+                             const OutputFrame& frame, const std::optional<GroundTruth>& truth,
                              const EvaluationOptions& how) {
   AlignedPath path;
-  const OutputFrame frame(rig, truth ? truth->frame : frame_name);
+  static_cast<CausalPoses&>(path) = poses;
   path.frame = frame.name();
-  path.body = body;
-  path.shown = frame(body);
-  path.truth.resize(body.size());
-  path.true_body.resize(body.size());
-  path.error_m.assign(body.size(), std::numeric_limits<double>::quiet_NaN());
+  path.truth.resize(path.body.size());
+  path.true_body.resize(path.body.size());
+  path.error_m.assign(path.body.size(), std::numeric_limits<double>::quiet_NaN());
   path.rotation_deg = path.error_m;
-  if (!truth || body.empty()) return path;
+  if (!truth || path.body.empty()) return path;
   try {
     const Association association = associate(truth->trajectory, path.shown, duration_from_seconds(how.max_gap_s));
     path.evaluation = evaluate(association, chosen_protocol(how));

@@ -3,23 +3,36 @@
 // The poses of a run or a trajectory file in its report: aligned with the truth if there is one.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "edged/camera/output_frame.hpp"
 #include "edged/dataset.hpp"
 #include "edged/eval/consistency.hpp"
 #include "edged/eval/metrics.hpp"
-#include "edged/io/calibration.hpp"
 #include "report/evaluation.hpp"
+#include "report/states_table.hpp"
 
 namespace edged {
 
-struct AlignedPath {
+/// The causal trajectory of a run.
+struct CausalPoses {
+  Trajectory body, shown;         ///< T_W_B, and of the sensor that is evaluated
+  std::vector<std::size_t> rows;  ///< of states.csv, one for each pose
+
+  /// Leaves out what is before, on the IMU clock.
+  void begin_at(Timestamp since);
+};
+
+/// From trajectory.tum, as each was published; of another sensor than that of the file, from states.csv by its frame.
+CausalPoses causal_poses(const std::filesystem::path& folder, const StatesTable& states, const std::string& written,
+                         const OutputFrame& shown);
+
+/// Those, in the world of the truth if there is one.
+struct AlignedPath : CausalPoses {
   std::string frame = "body";                 ///< whose pose `shown` is
-  Trajectory shown;                           ///< in the world of the truth, else in that of the estimate
-  Trajectory body;                            ///< `shown` of the body, on the IMU clock
-  std::vector<std::size_t> rows;              ///< of states.csv, one for each pose
   std::vector<std::optional<SE3>> truth;      ///< true pose, one for each pose; of a sparse truth, at the nearest one
   std::vector<std::optional<SE3>> true_body;  ///< `truth` of the body
   Trajectory true_path;                       ///< the ground truth over the time of the run
@@ -30,14 +43,9 @@ struct AlignedPath {
   Similarity alignment;                       ///< world of the estimate to the world that is shown
 };
 
-/// The rig by which poses of its cameras are those of the body: as found by the run. The time offset found for an event
-/// camera contains the latency of its pixels, which no pose has: the given one.
-Rig rig_for_poses(const Rig& given, Rig found);
-
-/// body: T_W_B. rig: as of rig_for_poses. frame: whose pose is shown without a truth, which has its own frame. samples:
-/// empty for a file.
-AlignedPath align_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples, const Rig& rig,
-                             const std::string& frame, const std::optional<GroundTruth>& truth,
+/// frame: that of `shown`, by which the truth becomes that of the body. samples: empty for a file.
+AlignedPath align_with_truth(const CausalPoses& poses, const std::vector<StateCovarianceSample>& samples,
+                             const OutputFrame& frame, const std::optional<GroundTruth>& truth,
                              const EvaluationOptions& how);
 
 }  // namespace edged

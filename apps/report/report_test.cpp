@@ -57,10 +57,11 @@ class Report : public ::testing::Test {
     make_run_folder(folder);
     Calibration calibration;
     calibration.rig = Rig{"head", {{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3(), {}}}};
-    RunWriter writer(folder, OutputFrame(calibration.rig, "events"), {});
+    RunWriter writer(folder, "events", {});
     GroundTruth truth{{}, "events"};
     for (int i = 0; i < steps; ++i) {
-      const Step step = step_at(i);
+      Step step = step_at(i);
+      step.rig = calibration.rig;
       const Eigen::Vector3d p = step.state.T_W_B.translation() / 1.01 + Eigen::Vector3d(1.0, 2.0, 3.0);
       truth.trajectory.push_back({step.t, SE3(step.state.T_W_B.rotation(), p)});
       writer.add(step);
@@ -71,8 +72,9 @@ class Report : public ::testing::Test {
     summary.run.mode = summary.run.frame = "events";
     summary.verdict.status = "good";
     const StatesTable states = read_states(folder);
-    const Rig& rig = calibration.rig;
-    if (with_truth) summary.truth = compare_with_truth(body_poses(states), covariance_samples_of(states), rig, truth);
+    const OutputFrame frame(calibration.rig, "events");
+    const CausalPoses poses = causal_poses(folder, states, "events", frame);
+    if (with_truth) summary.truth = compare_with_truth(poses, covariance_samples_of(states), frame, truth);
     write_file(folder / "calibration.yaml", to_yaml(calibration));
     write_file(folder / "config_resolved.yaml", options_with_one_changed());
     write_file(folder / "metrics.json", json_text(to_json(summary)));

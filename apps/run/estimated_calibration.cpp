@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edged/camera/field_of_view.hpp"
 #include "edged/camera/lens_table.hpp"
+#include "edged/camera/output_frame.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/estimator/window/calibration_prior.hpp"
 
@@ -88,15 +88,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& 
 }
 
 Calibration with_estimated(Calibration given, const Rig& estimated) {
-  const Rig before = given.rig;
-  for (RigCamera& camera : given.rig.cameras) {
-    for (const RigCamera& calibrated : estimated.cameras) {
-      if (!is_same_lens(before.camera(camera.name), before.camera(calibrated.name))) continue;
-      camera.model = calibrated.model;
-      camera.T_B_C = calibrated.T_B_C;
-      if (camera.name == calibrated.name) camera.time_offset = calibrated.time_offset;
-    }
-  }
+  given.rig = with_estimated(given.rig, estimated);
   return given;
 }
 

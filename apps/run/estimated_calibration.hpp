@@ -27,8 +27,7 @@ std::vector<CalibrationFound> compare_calibrations(const Rig& given, const Rig& 
 std::vector<CorrectionFound> corrections_of(const RigCamera& given, const RigCamera& found,
                                             const CalibrationCovariance& P, const CalibrationConfig& config);
 
-/// The given calibration with the estimated lens, pose and clock of these cameras. Other cameras behind the same lens
-/// get its lens and pose, and so remain behind one lens in the next run.
+/// The given calibration with the cameras as with_estimated of rigs has them.
 Calibration with_estimated(Calibration given, const Rig& estimated);
 
 }  // namespace edged

@@ -14,7 +14,6 @@
 #include "common/log.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/archive/zip_archive.hpp"
-#include "report/states_table.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_reader.hpp"
 #include "run/verdict.hpp"
@@ -200,15 +199,17 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
 
 void Run::compare(RunEnd& end) const {
   if (!end.truth) return;
-  const Rig rig = run_.estimated_rig();
+  const OutputFrame frame(run_.estimated_rig(), end.truth->frame);
   const StatesTable states = read_states(run_.folder);
-  const Trajectory body = end.in_map(body_poses(states));
-  if (body.empty()) return;
+  CausalPoses poses = causal_poses(run_.folder, states, run_.frame.name(), frame);
+  if (end.in_map_since) poses.begin_at(*end.in_map_since);
+  if (poses.body.empty()) return;
   TruthComparison& result = end.summary.truth;
-  result = compare_with_truth(body, covariance_samples_of(states), rig, *end.truth);
+  result = compare_with_truth(poses, covariance_samples_of(states), frame, *end.truth);
   if (!result.evaluation) return;
-  const Trajectory final_poses = OutputFrame(rig, end.truth->frame)(end.in_map(end.final_trajectory.poses));
-  result.final_evaluation = evaluate(associate(end.truth->trajectory, final_poses), protocol("P3"));
+  Trajectory final_poses = end.final_trajectory.poses;
+  if (end.in_map_since) std::erase_if(final_poses, [&](const StampedPose& pose) { return pose.t < *end.in_map_since; });
+  result.final_evaluation = evaluate(associate(end.truth->trajectory, frame(final_poses)), protocol("P3"));
 }
 
 }  // namespace edged

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "common/cli.hpp"
-#include "report/report_path.hpp"
 
 namespace edged {
 namespace {
@@ -30,18 +29,11 @@ RunContext::RunContext(const RunOptions& run_options, Source recording, Mode run
       used(used_cameras(source.calibration.rig, mode, config.odometry.cameras)),
       rig(used) {}
 
-Rig RunContext::estimated_rig() const {
-  return rig_for_poses(source.calibration.rig, with_estimated(source.calibration, rig).rig);
-}
+Rig RunContext::estimated_rig() const { return rig_for_poses(source.calibration.rig, rig); }
 
 std::vector<std::string> RunContext::heading(const OutputFrame& of, const std::string& known_when) const {
   return {fmt::format("{}; {}", of.describe(), known_when),
           fmt::format("edged {}, recording {}, mode {}", kVersion, info().name, mode_name(mode))};
-}
-
-Trajectory RunEnd::in_map(Trajectory poses) const {
-  if (in_map_since) std::erase_if(poses, [&](const StampedPose& pose) { return pose.t < *in_map_since; });
-  return poses;
 }
 
 }  // namespace edged

@@ -67,8 +67,6 @@ struct RunEnd {
   OdometryCounters counters;
   CalibrationCovariances covariances;
   std::function<std::optional<std::string>()> save_map;  ///< for on_summary
-  /// Without the poses that are not in the frame of the loaded map.
-  Trajectory in_map(Trajectory poses) const;
   // For on_end:
   FinalTrajectory final_trajectory;
   StageTimings timings;  ///< of the odometry

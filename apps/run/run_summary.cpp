@@ -11,7 +11,6 @@
 #include "common/findings.hpp"
 #include "common/json_text.hpp"
 #include "common/text.hpp"
-#include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
@@ -223,17 +222,16 @@ void Figures::line(const std::string& name, const std::string& value, const std:
   table += '\n';
 }
 
-TruthComparison compare_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples,
-                                   const Rig& rig, const GroundTruth& truth) {
+TruthComparison compare_with_truth(const CausalPoses& poses, const std::vector<StateCovarianceSample>& samples,
+                                   const OutputFrame& frame, const GroundTruth& truth) {
   TruthComparison result;
   try {
-    const OutputFrame frame(rig, truth.frame);
-    const Association association = associate(truth.trajectory, frame(body));
+    const Association association = associate(truth.trajectory, poses.shown);
     result.evaluation = evaluate(association, protocol("P3"));
     Trajectory true_body;
     for (const StampedPose& pose : truth.trajectory) true_body.push_back(frame.to_body(pose));
     result.consistency = check_consistency(true_body, samples);
-    result.offset = fit_time_offset(truth.trajectory, frame(body));
+    result.offset = fit_time_offset(truth.trajectory, frame(poses.body));
     for (const char* name : {"P1", "P2", "P3", "P4"}) {
       try {
         result.mpe_percent[name] = evaluate(association, protocol(name), {}, {}).mpe_percent;

@@ -17,6 +17,7 @@
 #include "edged/eval/time_offset.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/timing.hpp"
+#include "report/report_path.hpp"
 #include "run/run_statistics.hpp"
 
 namespace edged {
@@ -85,12 +86,11 @@ struct RunSummary {
   std::vector<std::string> unwritten;  ///< outputs that could not be written, and why
 };
 
-/// Compares the body's poses with the ground truth, in the ground truth's frame by the given calibration, as the
-/// trajectory files have them; and their errors with their covariances, in the body's frame by the calibration that the
-/// run estimated: a wrong lever arm is no error of the body's pose. Without evaluation, and with the reason in the log,
-/// if that is not possible.
-TruthComparison compare_with_truth(const Trajectory& body, const std::vector<StateCovarianceSample>& samples,
-                                   const Rig& rig, const GroundTruth& truth);
+/// Compares the poses as published with the ground truth, both of `frame`; and, by the calibration that the run
+/// estimated in the end, which `frame` has, the stamps of the truth, and the body's errors with their covariances: a
+/// wrong lever arm is none of these. Without evaluation, and with the reason in the log, if that is not possible.
+TruthComparison compare_with_truth(const CausalPoses& poses, const std::vector<StateCovarianceSample>& samples,
+                                   const OutputFrame& frame, const GroundTruth& truth);
 
 /// Unused measurements, in plain words.
 void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCounters& counters);

@@ -13,6 +13,7 @@
 #include "edged/final_trajectory.hpp"
 #include "edged/keyframe_record.hpp"
 #include "edged/measurement.hpp"
+#include "edged/rig.hpp"
 #include "edged/se3.hpp"
 #include "edged/state.hpp"
 #include "edged/time.hpp"
@@ -86,6 +87,12 @@ struct Step {
 
   double scene_depth = 0;                  ///< z-depth [m] used by the warp
   std::optional<LogScale> ln_depth_scale;  ///< s of Eq. 5; with the depth factor only
+
+  /// All given cameras, as calibrated by this packet; the time offset of event cameras is the given one, without the
+  /// latency of their pixels.
+  Rig rig;
+  /// The pose T_W_X of "body" or of a camera of `rig`, on its own clock. Throws InputError for another name.
+  StampedPose pose_of(const std::string& frame) const;
 
   /// The first camera of that modality; null if the run has none.
   const CameraStep* find(Modality modality) const;

@@ -76,10 +76,9 @@ def make_poses(t, position, quaternion):
     return _rows(POSE, t=t, position=position, quaternion=quaternion)
 
 
-def trajectory(steps):
-    """The poses of the steps that have one (status GOOD or DEGRADED), of the body on the IMU's clock."""
-    good = [(step.t, step.position, step.quaternion) for step in steps if step.is_tracking]
-    return _numpy.array(good, POSE)
+def trajectory(steps, frame="body"):
+    """The poses of the steps that have one (status GOOD or DEGRADED): of the body on the IMU's clock, or of a camera on its own."""
+    return _numpy.concatenate([_numpy.empty(0, POSE), *(step.pose_of(frame) for step in steps if step.is_tracking)])
 
 
 def run(recording, mode="auto", options=None):

@@ -38,10 +38,9 @@ def laid_onto(path, other):
 
 
 def draw_path(axes, recording, steps):
-    path = edged.trajectory(steps)
-    if recording.ground_truth:
-        frame, truth = recording.ground_truth
-        path = recording.calibration.poses_of(path, frame)
+    frame, truth = recording.ground_truth or ("body", None)
+    path = edged.trajectory(steps, frame)
+    if truth is not None:
         path = path[(path["t"] >= truth["t"][0]) & (path["t"] <= truth["t"][-1])]
         true_path = positions_at(truth, path["t"])
         ate = edged.evaluate(path, truth)["ate_m"]["rmse"]

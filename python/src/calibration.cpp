@@ -4,17 +4,9 @@
 #include <spdlog/fmt/ranges.h>
 
 #include "bindings.hpp"
-#include "edged/camera/output_frame.hpp"
 #include "edged/io/core/camera_names.hpp"
 
 namespace edged::python {
-namespace {
-
-py::array poses_of(const Calibration& calibration, const py::array& body, const std::string& frame) {
-  return poses_array(OutputFrame(calibration.rig, frame)(trajectory_of(body)));
-}
-
-}  // namespace
 
 Calibration calibration_of(const py::object& calibration) {
   if (py::isinstance<Calibration>(calibration)) return calibration.cast<Calibration>();
@@ -47,7 +39,6 @@ void bind_calibration(py::module_& module) {
       .def_property_readonly("rig", [](const Calibration& c) { return cameras(c.rig); })
       .def_readonly("has_extrinsics", &Calibration::has_extrinsics)
       .def_readonly("warnings", &Calibration::warnings)
-      .def("poses_of", &poses_of, py::arg("body"), py::arg("frame"))
       .def("to_yaml", [](const Calibration& c) { return to_yaml(c); })
       .def("__str__", &describe)
       .def("__repr__", [](const Calibration& c) {

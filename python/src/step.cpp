@@ -136,6 +136,9 @@ void bind_step(py::module_& module) {
   step.def_readonly("t", &Step::t)
       .def_readonly("status", &Step::status)
       .def_property_readonly("is_tracking", [](const Step& s) { return is_tracking(s.status); })
+      .def(
+          "pose_of", [](const Step& s, const std::string& frame) { return poses_array({s.pose_of(frame)}); },
+          py::arg("frame"))
       .def_property_readonly("attitude",
                              [](const Step& s) -> std::optional<Eigen::Vector4d> {
                                if (!s.attitude) return std::nullopt;

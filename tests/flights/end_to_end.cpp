@@ -95,7 +95,7 @@ FlightScore score(const Flight& flight, const FlightRun& run) {
   for (const Step& step : run.steps) {
     samples.add(step);
     if (!is_tracking(step.status)) continue;
-    estimate.push_back(frame({step.state.t, step.state.T_W_B}));
+    estimate.push_back(step.pose_of(flight.truth->frame));
     const auto after = std::lower_bound(truth.begin(), truth.end(), estimate.back().t,
                                         [](const StampedPose& pose, Timestamp t) { return pose.t < t; });
     if (after - truth.begin() < 2 || truth.end() - after < 2) continue;

@@ -101,7 +101,7 @@ TEST_F(Memory, StaysTheSameOverALongRun) {
   ToAndFro recording(flight.measurements, duration_s);
   const Rig& rig = flight.calibration.rig;
   Odometry odometry(rig, flight.calibration.imu, Mode::Fused, {}, {kInOrder});
-  RunWriter writer(folder_, OutputFrame(rig, "body"), {});
+  RunWriter writer(folder_, "body", {});
   RunStatistics statistics;
   double after_a_third_mb = 0.0, next_report_s = 0.0;
   std::optional<Timestamp> begin;

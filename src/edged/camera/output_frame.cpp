@@ -4,7 +4,29 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "edged/camera/field_of_view.hpp"
+
 namespace edged {
+
+Rig with_estimated(const Rig& given, const Rig& estimated) {
+  Rig found = given;
+  for (RigCamera& camera : found.cameras) {
+    for (const RigCamera& calibrated : estimated.cameras) {
+      if (!is_same_lens(given.camera(camera.name), given.camera(calibrated.name))) continue;
+      camera.model = calibrated.model;
+      camera.T_B_C = calibrated.T_B_C;
+      if (camera.name == calibrated.name) camera.time_offset = calibrated.time_offset;
+    }
+  }
+  return found;
+}
+
+Rig rig_for_poses(const Rig& given, const Rig& estimated) {
+  Rig found = with_estimated(given, estimated);
+  for (RigCamera& camera : found.cameras)
+    if (camera.modality == Modality::Events) camera.time_offset = given.camera(camera.name).time_offset;
+  return found;
+}
 
 OutputFrame::OutputFrame(const Rig& rig, const std::string& name) : name_(name) {
   if (name == "body") return;

@@ -10,6 +10,14 @@
 
 namespace edged {
 
+/// The given rig with the estimated lens, pose and clock of these cameras. Other cameras behind the same lens get its
+/// lens and pose, and so remain behind one lens.
+Rig with_estimated(const Rig& given, const Rig& estimated);
+
+/// That rig as poses of its cameras follow from those of the body: the time offset estimated for an event camera
+/// contains the latency of its pixels, which no pose has, so it is the given one.
+Rig rig_for_poses(const Rig& given, const Rig& estimated);
+
 /// The body or one camera, with what turns a body pose into its pose.
 class OutputFrame {
  public:

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -36,6 +37,29 @@ TEST(OutputFrame, OfACameraGivesItsPoseOnItsOwnClock) {
 }
 
 TEST(OutputFrame, OfAnUnknownCameraIsRefused) { EXPECT_THROW(OutputFrame(rig_with_one_camera(), "left"), InputError); }
+
+TEST(WithEstimated, GivesAllCamerasBehindALensItsCalibration) {
+  const RigCamera events{"events", Modality::Events, CameraModel(240, 180, 200, 200, 120, 90), SE3()};
+  RigCamera frames = events, other = events;
+  frames.name = "frames", frames.modality = Modality::Frames;
+  other.name = "other", other.T_B_C.translation().x() = 0.1;
+  const Rig given{"head", {events, frames, other}};
+  Rig found;
+  found.cameras = {frames};
+  found.cameras[0].model = CameraModel(240, 180, 201, 202, 121, 91);
+  found.cameras[0].T_B_C.translation().z() = 0.02;
+  found.cameras[0].time_offset = std::chrono::milliseconds(3);
+  const Rig rig = with_estimated(given, found);
+  EXPECT_TRUE(is_same_lens(rig.camera("events"), found.cameras[0]));
+  EXPECT_TRUE(is_same_lens(rig.camera("frames"), found.cameras[0]));
+  EXPECT_TRUE(is_same_lens(rig.camera("other"), other));
+  EXPECT_EQ(rig.camera("events").time_offset, Duration(0));
+  EXPECT_EQ(rig.camera("frames").time_offset, std::chrono::milliseconds(3));
+  found.cameras = {events};
+  found.cameras[0].time_offset = std::chrono::milliseconds(4);
+  EXPECT_EQ(with_estimated(given, found).camera("events").time_offset, std::chrono::milliseconds(4));
+  EXPECT_EQ(rig_for_poses(given, found).camera("events").time_offset, Duration(0)) << "latency of its pixels";
+}
 
 }  // namespace
 }  // namespace edged

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
 #include "edged/pipeline/input/measurement_validator.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
@@ -18,7 +19,8 @@ struct Odometry::Impl {
   Impl(const Rig& rig, const ImuNoise& noise, Mode mode, const OdometryConfig& config, const FeedConfig& feed)
       : Impl(rig, used_cameras(rig, mode, config.cameras), noise, config, feed) {}
   Impl(const Rig& rig, const Rig& used, const ImuNoise& noise, const OdometryConfig& config, const FeedConfig& feed)
-      : validator(rig, used, feed.delays),
+      : given(rig),
+        validator(rig, used, feed.delays),
         new_packetizer([used, packets = config.packets](const PacketizerCounters& so_far) {
           return Packetizer(used, packets, so_far);
         }),
@@ -29,6 +31,7 @@ struct Odometry::Impl {
   std::optional<Packet> next_packet();
   Step process(Packet packet);
 
+  Rig given;
   MeasurementValidator validator;  // any thread's
   StatePrediction prediction;      // any thread's
   std::function<Packetizer(const PacketizerCounters& so_far)> new_packetizer;
@@ -72,6 +75,7 @@ Step Odometry::Impl::process(Packet packet) {
   LocalizationOutput localized = localization.process(std::move(motion), seen, std::move(packet.external));
   vision.correct(localized.correction, localization.body());
   localized.step.cameras = vision.describe(std::move(packet), seen);
+  localized.step.rig = rig_for_poses(given, localization.rig());
   return std::move(localized.step);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "edged/camera/output_frame.hpp"
+
 namespace edged {
 
 std::string to_string(TrackingStatus status) {
@@ -13,6 +15,8 @@ std::string to_string(TrackingStatus status) {
 }
 
 bool is_tracking(TrackingStatus status) { return status == TrackingStatus::Good || status == TrackingStatus::Degraded; }
+
+StampedPose Step::pose_of(const std::string& frame) const { return OutputFrame(rig, frame)({t, state.T_W_B}); }
 
 const CameraStep* Step::find(Modality modality) const {
   const auto it = std::ranges::find(cameras, modality, &CameraStep::modality);
