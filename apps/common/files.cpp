@@ -48,10 +48,15 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::rename(part, file);
 }
 
-void check_writable(const std::filesystem::path& file, const char* option) {
+void check_writable(const std::filesystem::path& file, const char* option, std::string_view kind_begins) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError::format("{}: is a folder; give {} a file", file.string(), option);
+  std::string begin(kind_begins.size(), '\0');
+  if (std::ifstream before(file, std::ios::binary); before.read(begin.data(), std::ssize(begin)).gcount() > 0)
+    if (begin != kind_begins)
+      throw InputError::format("{}: is there, and nothing that {} replaces; choose another name, or remove it",
+                               file.string(), option);
   std::string trial = file.string() + ".XXXXXX";
   const int opened = mkstemp(trial.data());
   if (opened < 0)

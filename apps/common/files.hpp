@@ -7,6 +7,7 @@
 #include <fstream>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <string_view>
 
 namespace edged {
 
@@ -29,9 +30,9 @@ class TableFile {
   std::ofstream out_;
 };
 
-/// Throws InputError, with the option, if the file cannot be written. To be called before a long run whose result goes
-/// to the file.
-void check_writable(const std::filesystem::path& file, const char* option);
+/// Throws InputError, with the option, if the file cannot be written, or is there and does not begin as its kind does:
+/// a recording, say. To be called before a long run whose result goes to the file.
+void check_writable(const std::filesystem::path& file, const char* option, std::string_view kind_begins = "");
 
 /// Throws InputError, with the option, if the folder is there and not empty.
 void check_empty(const std::filesystem::path& folder, const char* option);

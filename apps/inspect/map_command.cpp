@@ -71,7 +71,7 @@ int run_info(const MapCommandOptions& options) {
 
 int run_show(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file);
-  check_writable(options.out, "--out");
+  check_writable(options.out, "--out", "ply\n");
   write_file(options.out, map_ply(mapped(map)));
   print_result(options.json, {{"out", options.out.string()}, {"keyframes", map.keyframes.size()}},
                fmt::format("{}: points of {}; any viewer of point clouds shows them\n", options.out.string(),
@@ -81,7 +81,7 @@ int run_show(const MapCommandOptions& options) {
 
 int run_merge(const MapCommandOptions& options) {
   const SavedMap map = read_map(options.file), other = read_map(options.other);
-  check_writable(options.out, "--out");
+  check_writable(options.out, "--out", beginning_of_maps());
   const auto [T_A_B, refusal] = find_map_in(map, other);
   if (!T_A_B)
     throw InputError::format(

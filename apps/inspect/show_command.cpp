@@ -134,7 +134,7 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
 int show_recording(const ShowOptions& options) {
   catch_interrupts();
   const bool page = options.out.extension() == ".html";
-  if (page) check_writable(options.out, "--out");
+  if (page) check_writable(options.out, "--out", kPageBegin);
   const Recording recording = open_uncalibrated(options.source);
   Dataset& dataset = *recording.dataset;
   if (!dataset.info().has_events)

@@ -46,6 +46,7 @@ std::vector<double> plot_numbers(const Step& step, const PacketPace& pace) {
 nlohmann::ordered_json progress_json(const RunProgress& progress) {
   const RunStatistics& s = progress.statistics;
   const double span = s.visual_span_s();
+  const RunStatistics::Overload overload = s.overload();
   return {{"poses", s.poses()},
           {"keyframes", s.keyframes()},
           {"packets", s.packets()},
@@ -53,6 +54,7 @@ nlohmann::ordered_json progress_json(const RunProgress& progress) {
           {"first_good_s", value_or_null(s.first_good_s())},
           {"times_lost", s.times_lost()},
           {"duration_s", span},
+          {"overload", overload.share >= kToldOverload ? overload.text : ""},
           {"real_time_factor", progress.wall_s > 0.0 ? span / progress.wall_s : 0.0}};
 }
 

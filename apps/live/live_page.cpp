@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/live_page.hpp"
 
-#include <Eigen/Core>  // before httplib, whose system headers define _res
-
-#include <httplib.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
@@ -22,6 +18,7 @@
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "live/live_feed.hpp"
+#include "live/page_server.hpp"
 #include "report/report_page.hpp"
 #include "run/run_context.hpp"
 #include "scene/live_points.hpp"
@@ -31,7 +28,6 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 constexpr auto kUpdatePeriod = std::chrono::milliseconds(200), kEndPeriod = std::chrono::milliseconds(20);
-constexpr std::size_t kMostViewers = 12, kThreads = kMostViewers + 4;  // each viewer occupies one while it is connected
 constexpr auto kLongestFarewell = std::chrono::seconds(10), kPatience = std::chrono::seconds(2),
                kTimeToConnect = std::chrono::seconds(1);
 
@@ -48,11 +44,6 @@ void reply(httplib::Response& response, const char* type, std::string body, std:
       [sent = std::move(sent)](bool) {
         if (sent) sent();
       });
-}
-
-void refuse(httplib::Response& response, int status, const char* text) {
-  response.status = status;
-  response.set_content(text, "text/plain");
 }
 
 std::string url_of(const ServeAddress& address) {
@@ -103,7 +94,7 @@ class LivePage {
   void part_from_viewers();
 
   std::string page_;
-  httplib::Server http_;
+  PageServer http_;
 
   std::mutex mutex_;  ///< guards all below but the thread
   std::condition_variable changed_;
@@ -118,21 +109,7 @@ class LivePage {
 
 LivePage::LivePage(const ServeAddress& address, const nlohmann::ordered_json& about, std::string frame,
                    const LivePoints& dense)
-    : feed(std::move(frame), dense), page_(live_report_page(about)) {
-  http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  // An idle connection blocks a thread, and the end of the program: browsers open some in advance.
-  http_.set_keep_alive_max_count(1);
-  http_.set_keep_alive_timeout(1);
-  http_.set_read_timeout(1);
-  http_.set_write_timeout(1);  // a viewer that does not read is disconnected: browsers reconnect
-  http_.set_tcp_nodelay(true);
-  // Not httplib's default options, with which two programs could share a port. A large send buffer would delay the
-  // updates of a slow viewer.
-  http_.set_socket_options([](int socket) {
-    const int yes = 1, held_bytes = 1 << 15;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &held_bytes, sizeof held_bytes);
-  });
+    : feed(std::move(frame), dense), page_(live_report_page(about)), http_(address.host) {
   answer();
   bind(address);
   thread_ = std::jthread([this] { http_.listen_after_bind(); });
@@ -146,6 +123,7 @@ LivePage::~LivePage() {
     closing_ = true;
   }
   changed_.notify_all();
+  http_.close();
   http_.stop();
 }
 
@@ -168,7 +146,8 @@ void LivePage::bind(ServeAddress address) {
 }
 
 void LivePage::answer() {
-  http_.set_pre_routing_handler([this](const httplib::Request&, httplib::Response&) {
+  http_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (http_.refuses(request, response)) return httplib::Server::HandlerResponse::Handled;
     const std::lock_guard lock(mutex_);
     asked_ = WallClock::now();
     return httplib::Server::HandlerResponse::Unhandled;

@@ -71,7 +71,8 @@ class RunChecks : public RunObserver {
     const CalibrationConfig& config = run_.config.odometry.estimator.calibration;
     const Rig& given = run_.source.calibration.rig;
     summary.calibration = compare_calibrations(given, run_.rig, end.covariances, config);
-    for (Finding& finding : check_.findings(*run_.source.dataset, end.truth))
+    const bool dropped_frames = summary.live && summary.live->dropped.frames > 0;
+    for (Finding& finding : check_.findings(*run_.source.dataset, end.truth, dropped_frames))
       summary.verdict.findings.push_back(std::move(finding));
     judge_external(end.counters, summary.verdict.findings);
     judge_rig(given, run_.rig, config, summary.verdict.findings);

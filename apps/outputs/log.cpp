@@ -35,6 +35,7 @@ class RunStatusLine : public RunObserver {
     }
     if (run_.mode != Mode::Events)
       text += fmt::format("  frame tracks {}", modality_numbers(step, Modality::Frames).tracks);
+    if (const auto overload = run_.statistics.overload(); overload.share >= kToldOverload) text += "  " + overload.text;
     text += "  " + to_string(step.status);
     if (!step.waiting_for.empty()) text += ", waits for " + step.waiting_for;
     return text;

@@ -51,7 +51,7 @@ class RunMap : public RunObserver {
     if (!options_.save.empty() && localize_only())
       throw InputError(
           "--save-map with --localize-only (map.localize_only): the map never changes; leave one of them out");
-    if (!options_.save.empty()) check_writable(options_.save, "--save-map");
+    if (!options_.save.empty()) check_writable(options_.save, "--save-map", beginning_of_maps());
     if (!options_.load.empty())
       read_map_file(options_.load, [&](const std::string& bytes) {
         run.products.get<InitialMap>() = {options_.load, bytes};
@@ -137,6 +137,11 @@ class RunMap : public RunObserver {
 };
 
 }  // namespace
+
+std::string beginning_of_maps() {
+  const std::string empty = to_bytes({});
+  return empty.substr(0, empty.find('\n') + 1);
+}
 
 SavedMap read_map(const std::filesystem::path& file) { return read_map_file(file, saved_map_from_bytes); }
 

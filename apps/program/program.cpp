@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -77,6 +78,18 @@ Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
   return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
 }
 
+/// Bounds do not refuse "nan", and one side of them "inf".
+void refuse_infinite_numbers(CLI::App& app) {
+  for (CLI::Option* option : app.get_options())
+    if (option->get_type_name().starts_with("FLOAT"))
+      option->check([](const std::string& text) {
+        double value = 0.0;
+        const bool infinite = CLI::detail::lexical_cast(text, value) && !std::isfinite(value);
+        return infinite ? fmt::format("'{}' is no finite number", text) : "";
+      });
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuse_infinite_numbers(*command);
+}
+
 /// A folder without permission, a name that is too long, a full disk: no bugs of ours.
 std::string text_of(const std::filesystem::filesystem_error& error) {
   return fmt::format("{}: {}; check the path and your rights there", error.path1().string(), error.code().message());
@@ -107,6 +120,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     cv::setNumThreads(
         1);  // one packet is too little work for several threads, and one thread keeps results reproducible
     start_logging();
+    refuse_infinite_numbers(app);
     app.parse(argc, argv);
     const int code = run();
     end_output();

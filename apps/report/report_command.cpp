@@ -27,7 +27,7 @@ int write_report(const ReportCommand& options) {
   const bool one_folder = options.runs.size() == 1 && std::filesystem::is_directory(options.runs[0]);
   std::filesystem::path out = one_folder && options.out.empty() ? options.runs[0] : options.out;
   if (out.empty() || std::filesystem::is_directory(out)) out /= "report.html";
-  check_writable(out, "--out");
+  check_writable(out, "--out", kPageBegin);
   write_file(out, report_page(report_data(options.runs, options.report)));
   print_result(options.json, {{"out", out.string()}}, out.string() + "\n");
   return kExitOk;

@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 namespace edged {
+
+inline constexpr std::string_view kPageBegin = "<!DOCTYPE html>";  ///< of all pages
 
 /// The data is escaped, so that it cannot end its script element.
 std::string report_page(const nlohmann::ordered_json& data);

@@ -136,6 +136,7 @@ void Run::observe(const Step& step, RunReader& reader) {
   run_.pace.processing_ms = 1e3 * odometry_.timings().find("process")->last_s();
   if (const auto latency_s = reader.note_result(step.t)) run_.pace.latency_ms = 1e3 * *latency_s;
   run_.statistics.add(step);
+  run_.statistics.set_dropped(reader.dropped());
   update_context();
   for (auto next = observers_.begin(); next != observers_.end();) {
     const std::string stage = (*next)->stage();
@@ -171,6 +172,7 @@ RunSummary Run::finish(RunReader& reader, bool broken_off) {
 
 RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   update_context();
+  run_.statistics.set_dropped(reader.dropped());
   RunEnd end;
   end.counters = odometry_.counters();
   end.covariances = calibration_covariances(odometry_);

@@ -24,6 +24,8 @@ class RunReader {
   std::optional<double> note_result(Timestamp t);
   /// The dataset is no longer read.
   void stop();
+  /// By a live run, so far.
+  DropCounters dropped() const { return live_ ? live_->dropped() : DropCounters{}; }
   std::optional<LiveSummary> live_summary(const OdometryCounters& counters) const;
 
  private:

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run/run_statistics.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -47,7 +48,8 @@ void RunStatistics::add_visual(const Measurement& measurement, const Rig& used) 
   const std::optional<Timestamp> first = first_stamp(measurement);
   const std::string* name = camera_of(measurement);
   if (!first || !name) return;
-  if (const auto* batch = std::get_if<EventBatch>(&measurement)) events_ += batch->events.size();
+  if (const auto* batch = std::get_if<EventBatch>(&measurement)) used_.events += batch->events.size();
+  if (std::holds_alternative<Frame>(measurement)) ++used_.frames;
   const auto camera = std::ranges::find(used.cameras, *name, &RigCamera::name);
   if (camera != used.cameras.end())
     add_visual(*first + camera->time_offset, *last_stamp(measurement) + camera->time_offset);
@@ -74,6 +76,15 @@ void RunStatistics::add(const Step& step) {
 }
 
 double RunStatistics::visual_span_s() const { return first_visual_ ? to_seconds(last_visual_ - *first_visual_) : 0.0; }
+
+RunStatistics::Overload RunStatistics::overload() const {
+  const auto share = [](std::size_t dropped, std::size_t used) {
+    return dropped == 0 ? 0.0 : static_cast<double>(dropped) / static_cast<double>(dropped + used);
+  };
+  const double events = share(dropped_.events, used_.events), frames = share(dropped_.frames, used_.frames);
+  const double most = std::max(events, frames);
+  return {most, fmt::format("{:.0f} % of the {} dropped", 100.0 * most, frames > events ? "frames" : "events")};
+}
 
 double RunStatistics::coverage() const {
   const double span = visual_span_s();

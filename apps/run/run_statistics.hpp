@@ -11,11 +11,15 @@
 
 #include "common/step_numbers.hpp"
 #include "edged/eval/metrics.hpp"
+#include "edged/live/measurement_queue.hpp"
 #include "edged/measurement.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/localization/scale_uncertainty.hpp"
 
 namespace edged {
+
+/// Share of dropped measurements from which on it is shown during a run.
+inline constexpr double kToldOverload = 0.01;
 
 /// Counts of one run. Stamps are on the IMU clock.
 class RunStatistics {
@@ -27,8 +31,7 @@ class RunStatistics {
   void add(const Step& step);
 
   std::size_t packets() const { return packets_; }
-  std::size_t events() const { return events_; }  ///< that reached the odometry
-  std::size_t poses() const { return poses_; }    ///< Good and Degraded packets
+  std::size_t poses() const { return poses_; }  ///< Good and Degraded packets
   std::size_t keyframes() const { return keyframes_; }
   std::size_t loops_closed() const { return loops_closed_; }
   std::size_t times_lost() const { return times_lost_; }
@@ -48,6 +51,13 @@ class RunStatistics {
   /// What the last initialization waited for, and what ended the last estimate; may be empty.
   const std::string& waiting_for() const { return waiting_for_; }
   const std::string& lost_because() const { return lost_because_; }
+  /// What a live run has dropped so far, as it was too slow.
+  void set_dropped(const DropCounters& dropped) { dropped_ = dropped; }
+  struct Overload {
+    double share = 0.0;  ///< of the events or of the frames, the larger one
+    std::string text;    ///< "93 % of the events dropped"
+  };
+  Overload overload() const;
   /// Relative standard deviation of the way travelled, see ScaleUncertainty; nothing if it is short.
   std::optional<double> scale_sigma() const { return scale_.sigma(kShortestPath_m); }
   /// Sigma of roll and pitch in the last packet, while Initializing; nothing without an attitude.
@@ -61,7 +71,8 @@ class RunStatistics {
   std::optional<Timestamp> first_visual_;
   Timestamp last_visual_;
   std::optional<Timestamp> last_packet_;
-  std::size_t events_ = 0, packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0, times_contradicted_ = 0;
+  DropCounters dropped_, used_;
+  std::size_t packets_ = 0, poses_ = 0, keyframes_ = 0, times_lost_ = 0, times_contradicted_ = 0;
   std::size_t loops_closed_ = 0;
   std::array<double, 4> seconds_{};
   std::optional<double> first_good_s_;

@@ -46,6 +46,19 @@ TEST(RunStatistics, OfNothingAreZero) {
   EXPECT_FALSE(statistics.first_good_s());
 }
 
+TEST(RunStatistics, TellTheLargerShareOfWhatWasDropped) {
+  RunStatistics statistics;
+  EXPECT_EQ(statistics.overload().share, 0.0);
+  const EventBatch batch{"events", std::vector<Event>(70, Event{at(1.0), 0, 0, true})};
+  statistics.add_visual(batch, {});
+  statistics.add_visual(Frame{at(1.0), "frames", {}}, {});
+  statistics.set_dropped({930, 0});
+  EXPECT_EQ(statistics.overload().text, "93 % of the events dropped");
+  statistics.set_dropped({930, 99});
+  EXPECT_EQ(statistics.overload().text, "99 % of the frames dropped");
+  EXPECT_EQ(statistics.overload().share, 0.99);
+}
+
 TEST(RunStatistics, CountLossesNotLostPackets) {
   RunStatistics statistics;
   for (int i = 0; i < 3; ++i) statistics.add(step_at(i, TrackingStatus::Lost));

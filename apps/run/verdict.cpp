@@ -108,21 +108,17 @@ void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Find
   }
 }
 
-/// Latency of the results, and the share of dropped events.
+/// Latency of the results, and the share that was dropped.
 void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<Finding>& out) {
   constexpr double kSome = 0.1, kMost = 0.5, kLate = 4.0;
-  const double dropped =
-      run.events() > 0 || live.dropped.events > 0
-          ? static_cast<double>(live.dropped.events) / static_cast<double>(live.dropped.events + run.events())
-          : 0.0;
+  const RunStatistics::Overload overload = run.overload();
   const double late_s = live.latency.quantile_s(0.50);
   const bool too_late = late_s > kLate * live.max_age_s;
-  if (dropped < kSome && !too_late) return;
+  if (overload.share < kSome && !too_late) return;
   out.push_back(
-      {dropped > kMost || too_late ? Severity::Error : Severity::Warning,
-       fmt::format("live: too slow for this recording: {:.0f} % of the events dropped, latency {:.2f} s "
-                   "(median; live.max_age_s {:g})",
-                   100 * dropped, late_s, live.max_age_s),
+      {overload.share > kMost || too_late ? Severity::Error : Severity::Warning,
+       fmt::format("live: too slow for this recording: {}, latency {:.2f} s (median; live.max_age_s {:g})",
+                   overload.text, late_s, live.max_age_s),
        "raise packets.min_interval_s, lower tracker.detector.max_features, choose another --mode, or use a faster "
        "computer"});
 }

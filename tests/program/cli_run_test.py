@@ -71,6 +71,11 @@ class Run(WithFlight):
         lines = trajectory.read_text().splitlines()
         self.assertEqual((whole / "trajectory.tum").read_text().splitlines()[:len(lines)], lines)
 
+    def test_a_number_that_is_not_finite_is_refused(self):
+        for flags in (["--duration", "inf"], ["--occupancy", "x", "--occupancy-voxel", "nan"], ["--export", "x", "--export-hz=nan"],
+                      ["--occupancy", "x", "--occupancy-heights", "0", "inf"]):
+            self.assert_refused(edged("run", self.flight, *flags), "is no finite number", code=2)
+
     def test_a_simulation_takes_options_of_the_simulator(self):
         run = edged("run", "sim:room:3:duration_s=2,frames.rate_hz=10", "--json", "--quiet", "--out", self.folder / "run")
         metrics = json.loads(run.stdout)

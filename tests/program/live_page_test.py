@@ -24,6 +24,10 @@ FACTS = "Object.fromEntries([...document.querySelectorAll('.facts div')].map(e =
 TOO_WIDE = "[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll, pre') && e.getBoundingClientRect().right > innerWidth + 0.5).length"
 
 
+def address_of(url):
+    return "127.0.0.1", int(re.search(r"\d+(?=/$)", url).group(0))
+
+
 def get(url):
     with urllib.request.urlopen(url, timeout=30) as answer:
         return answer.read(), answer.headers
@@ -53,7 +57,7 @@ class Listener(threading.Thread):
 
 class LivePage(WithFlight):
     @contextlib.contextmanager
-    def serving(self, *args):
+    def serving(self, *args, warning=""):
         """The program with a page at the url; it is over when the block has been left. A slow machine leaves nothing out."""
         process = subprocess.Popen([EDGED, "run", str(self.flight), "--serve=0", "--quiet", "--json", "--out", str(self.folder / "run"),
                                     "--set", "live.max_age_s=3600", *map(str, args)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -66,7 +70,7 @@ class LivePage(WithFlight):
         finally:
             process.kill()
             process.communicate()
-        self.assertEqual(self.stderr, "")
+        self.assertRegex(self.stderr, f"^{warning}$")
 
     def metrics(self):
         return json.loads((self.folder / "run" / "metrics.json").read_text())
@@ -138,16 +142,67 @@ class LivePage(WithFlight):
 
     def test_one_who_never_reads_and_one_who_never_asks_hold_up_nothing(self):
         with self.serving("--live", "--duration", 2) as (process, url):
-            address = ("127.0.0.1", int(re.search(r"\d+(?=/$)", url).group(0)))
+            address = address_of(url)
             with socket.socket() as deaf, socket.create_connection(address):
                 deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
                 deaf.connect(address)
-                deaf.sendall(b"GET /events HTTP/1.1\r\nHost: x\r\n\r\n")
+                deaf.sendall(b"GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n")
                 listener = Listener(url)
                 listener.join()
                 process.wait(timeout=30)
         self.assertEqual(listener.updates[-1]["progress"]["packets"], self.metrics()["packets"])
         self.assertIn("live page: at most 2 viewers at once", (self.folder / "run" / "run.log").read_text())
+
+    def test_one_who_asks_byte_by_byte_does_not_hold_up_the_end(self):
+        def drip(process, connection):
+            with contextlib.suppress(OSError):
+                connection.sendall(b"GET / HTTP/1.1\r\nX: ")
+                while process.poll() is None:
+                    connection.sendall(b"x")
+                    time.sleep(0.3)
+
+        with self.serving("--live", "--mode", "frames", "--duration", 1) as (process, url):
+            connections = [socket.create_connection(address_of(url)) for _ in range(3)]
+            for connection in connections:
+                threading.Thread(target=drip, args=(process, connection)).start()
+            process.wait(timeout=30)
+        for connection in connections:
+            connection.close()
+
+    def test_what_is_sent_and_what_is_for_another_host_is_refused(self):
+        def status(url, request):
+            with socket.create_connection(address_of(url)) as connection:
+                connection.sendall(request.encode())
+                return int(connection.recv(100).split()[1])
+
+        with self.serving("--live", "--duration", 2) as (_, url):
+            for host, expected in (("localhost", 200), (url[7:-1], 200), ("[::1]:80", 200), ("192.168.1.2:8765", 200),
+                                   ("evil.example:8765", 403), ("127.0.0.1.evil.example", 403), ("", 403)):
+                self.assertEqual(status(url, f"GET / HTTP/1.1\r\nHost: {host}\r\n\r\n"), expected, host)
+            self.assertEqual(status(url, "GET / HTTP/1.0\r\n\r\n"), 403)
+            for method in ("POST", "PUT", "DELETE"):  # before the body has come
+                self.assertEqual(status(url, f"{method} /events HTTP/1.1\r\nHost: localhost\r\nContent-Encoding: gzip\r\n"
+                                             "Content-Length: 1000000000\r\n\r\n"), 405, method)
+
+    def test_what_it_is_too_slow_for_is_told(self):
+        with self.serving("--live", "--set", "live.max_age_s=0.001", warning="(edged: warning: too slow for .*\n)+") as (_, url):
+            listener = Listener(url)
+            listener.join()
+        told = listener.updates[-1]["progress"]["overload"]
+        self.assertRegex(told, r"^\d+ % of the (events|frames) dropped$")
+        for finding in self.metrics()["findings"]:
+            self.assertNotIn("bus", finding["remedy"])
+            if finding["text"].startswith("live: "):
+                self.assertIn(told, finding["text"])
+
+    def test_too_little_memory_is_told_in_a_line(self):
+        for megabytes in range(200, 400, 20):
+            result = subprocess.run(["bash", "-c", f'ulimit -v {1024 * megabytes}; exec "$0" "$@"', EDGED, "run", str(self.flight), "--serve=0", "--mode",
+                                     "frames", "--duration", "0.5", "--quiet", "--out", str(self.folder / "run"), "--force"],
+                                    capture_output=True, text=True, check=False, timeout=60)
+            self.assertNotIn("terminate", result.stderr, megabytes)
+            if "threads" in result.stderr:
+                self.assert_refused(result, "--serve", "ulimit")
 
     def test_pictures_are_there_for_those_who_ask(self):
         with self.serving("--live", "--duration", 3) as (_, url):
@@ -223,6 +278,18 @@ class LivePage(WithFlight):
         for width, dark in views:
             self.watch(browser, width, dark)
         self.assertEqual(browser.complaints, [])
+
+    @unittest.skipUnless(CHROMIUM, "no chromium here: apt-get install chromium")
+    def test_a_browser_says_that_it_is_too_slow(self):
+        browser = Browser(self.folder / "profile")
+        self.addCleanup(browser.close)
+        browser.show(1400, 900)
+        with self.serving("--live", "--set", "live.max_age_s=0.001", warning="(edged: warning: too slow for .*\n)+") as (_, url):
+            browser.open(url)
+            browser.wait_for("/ Too slow: [1-9][0-9]* % of the (events|frames) dropped[.]$/.test(document.querySelector('.says')?.textContent)")
+            self.assertNotEqual(browser.value("document.getElementById('live').style.getPropertyValue('--verdict')"), "var(--good)")
+            for width in (390, 1400):
+                self.watch(browser, width, False)
 
     @unittest.skipUnless(CHROMIUM, "no chromium here: apt-get install chromium")
     def test_a_browser_says_when_the_program_is_gone(self):

@@ -119,6 +119,10 @@ class Maps(WithFlight):
         self.assert_refused(self.run_in(self.map, "map.enabled=false"), "map.enabled=false")
         nowhere = self.folder / "no" / "folder.map"
         self.assert_refused(self.run_in(self.map, "--save-map", nowhere), str(nowhere))
+        bag = self.folder / "flight.bag"
+        bag.write_bytes(b"#ROSBAG V2.0\n")
+        self.assert_refused(self.run_in(self.map, "--save-map", bag), str(bag), "is there")
+        self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
         result = edged("run", self.flight, self.flight, "--save-map", damaged, "--quiet")
         self.assertEqual(result.returncode, 2, result.stderr)
 

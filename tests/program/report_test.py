@@ -91,6 +91,12 @@ class Page(WithFlight):
         self.assertEqual((made.returncode, made.stdout.strip()), (0, str(out)), made.stderr)
         self.assertEqual(out.read_text(), (self.run_folder / "report.html").read_text())
 
+    def test_only_a_page_is_replaced(self):
+        bag = self.folder / "flight.bag"
+        bag.write_bytes(b"#ROSBAG V2.0\n")
+        self.assert_refused(edged("report", self.run_folder, "--out", bag), str(bag), "is there")
+        self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
+
     def test_what_is_no_run_is_refused_in_a_line(self):
         self.assert_refused(edged("report", self.flight), str(self.flight), "no run folder", "edged run")
         self.assert_refused(edged("report", self.folder / "none"), "none", "not found")

@@ -70,7 +70,8 @@ function liveCard(run) {
     card.style.setProperty('--verdict', 'var(--' + ink + ')');
   };
   return [card, say, update => {
-    say(...kLiveSays[update.status]);
+    const [text, ink] = kLiveSays[update.status], overload = update.progress.overload;
+    overload ? say(text + ' Too slow: ' + overload + '.', ink === 'lost' ? ink : 'degraded') : say(text, ink);
     why.textContent = update.reason;
     list.replaceChildren(...liveFacts(run, update).flatMap(([name, value]) => value === null ? [] : [make('div', {}, make('dt', {}, name), make('dd', {}, value))]));
   }];

@@ -33,6 +33,7 @@ struct CheckInput {
   const RecordingStatistics& recording;
   bool calibrated = false;  ///< there is a calibration, possibly of other cameras than the recorded ones
   std::vector<CameraCheck> cameras = {};
+  bool dropped_frames = false;  ///< by the run itself, which was too slow for them
 };
 
 /// The remedy for a camera whose inverse transform fits.

@@ -54,6 +54,14 @@ std::string remedy_of(const RecordingStatistics& recording, const std::vector<Ca
   return remedy_of(check_recording({recording, !cameras.empty(), cameras}), severity, text);
 }
 
+TEST(Checks, NameFramesThatTheRunDroppedAsItsOwn) {
+  RecordingStatistics s = healthy();
+  s.frames.gaps = 1, s.frames.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(300)}};
+  EXPECT_THAT(remedy_of(s, {}, Warning, "1 gaps of the frames"), HasSubstr("overloaded bus"));
+  EXPECT_THAT(remedy_of(check_recording({s, true, {}, true}), Warning, "1 gaps of the frames"),
+              HasSubstr("this run dropped"));
+}
+
 TEST(Checks, OfAHealthyRecordingIsGoodAllOver) {
   for (const Finding& f : check_recording({healthy(), true, {agreeing()}})) EXPECT_EQ(f.severity, Good) << f.text;
 }

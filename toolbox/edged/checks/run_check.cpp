@@ -199,8 +199,8 @@ void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& sta
   if (!camera.same_lens) check_lever_arm(camera.given, out);
 }
 
-std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics) const {
-  CheckInput input{statistics, true};
+std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics, bool dropped_frames) const {
+  CheckInput input{statistics, true, {}, dropped_frames};
   for (const Camera& camera : cameras_) {
     if (camera.deferred) continue;
     input.cameras.push_back(
@@ -222,7 +222,7 @@ std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics) cons
 std::vector<Finding> RunCheck::news() {
   if (!std::exchange(look_, false)) return {};
   looked_ = true;
-  std::vector<Finding> fresh = check(collector_.so_far());
+  std::vector<Finding> fresh = check(collector_.so_far(), false);
   std::erase_if(fresh, [this](const Finding& finding) {
     const bool known = std::ranges::find(reported_, subject_of(finding)) != reported_.end();
     return known || finding.severity != Severity::Error;
@@ -244,12 +244,13 @@ bool RunCheck::agrees_with(const RigCamera& estimated) const {
   });
 }
 
-std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth) {
+std::vector<Finding> RunCheck::findings(const Dataset& dataset, const std::optional<GroundTruth>& truth,
+                                        bool dropped_frames) {
   for (Camera& camera : cameras_) {
     if (!camera.done && !camera.deferred && camera.turning >= first_look(camera.given)) compare(camera);
     camera.done = true;
   }
-  return check(collector_.result(dataset, truth));
+  return check(collector_.result(dataset, truth), dropped_frames);
 }
 
 }  // namespace edged

@@ -27,7 +27,9 @@ class RunCheck {
   std::vector<Finding> news();
 
   /// Warnings and errors from all measurements. To be called after the last one. truth: that of the dataset.
-  std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth);
+  /// dropped_frames: before add, as in CheckInput.
+  std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth,
+                                bool dropped_frames = false);
 
   /// True if the gyro confirms the mounting of this camera, which the run has estimated. After findings().
   bool agrees_with(const RigCamera& estimated) const;
@@ -66,7 +68,7 @@ class RunCheck {
   void follow(Camera& camera, const Measurement& measurement);
   void compare(Camera& camera);
   static void check_camera(const Camera& camera, const RecordingStatistics& statistics, Findings& out);
-  std::vector<Finding> check(const RecordingStatistics& statistics) const;
+  std::vector<Finding> check(const RecordingStatistics& statistics, bool dropped_frames) const;
 
   bool has_extrinsics_;
   RecordingCollector collector_;

@@ -106,7 +106,8 @@ void check_frames(const CheckInput& input, Findings& out) {
     out.warn(fmt::format("{} gaps of the frames, {:.2f} s together, the longest {:.2f} s at {:.3f} s", s.frames.gaps,
                          to_seconds(s.frames.missing), to_seconds(s.frames.longest.front().length),
                          to_seconds(s.frames.longest.front().after)),
-             "corners are lost over long ones; look for an overloaded bus");
+             input.dropped_frames ? "this run dropped frames, as it was too slow for them"
+                                  : "corners are lost over long ones; look for an overloaded bus");
   if (s.mean_brightness < 15.0)
     out.note(fmt::format("frames are dark: mean brightness {:.0f} of 255", s.mean_brightness),
              "expose longer, or rely on --mode events or fused");
