@@ -107,7 +107,7 @@ class BadInput(WithFolder):
         text = self.folder / "events.txt"
         for line, why in (("0.1 5", "2 columns where an event of this file has 4: t x y p"),
                           ("0.1 5 abc 1", "column 3 ('abc') must be a pixel, whole and from 0 on"),
-                          ("0.1 5 6 7", "column 4 ('7') must be a polarity: 0 or 1, or -1 or 1"),
+                          ("0.1 5 6 7", "column 4 ('7') must be a polarity: 0 or 1, -1 or 1, or True or False"),
                           ("0.1 -5 6 0", "column 2 ('-5') must be a pixel")):
             text.write_text(f"{line}\n" * 3000)
             self.assert_refused(edged("info", text, "--geometry", "240x180", "--quiet"), f"{text}:1: {why}")
