@@ -14,6 +14,7 @@
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/eval/evaluation_json.hpp"
+#include "edged/imu/imu_gate.hpp"
 #include "report/evaluation.hpp"
 
 namespace edged {
@@ -265,12 +266,12 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"events of flickering lamps left out", packets.events_flicker},
       {"late frames dropped", packets.frames_late},
       {"times of 5 s without a frame", packets.frames_missing},
-      {"late IMU samples dropped", packets.imu_late},
-      {"IMU samples dropped that are no numbers", packets.imu_not_finite},
   };
   for (const auto& [kind, count] : dropped) {
     if (count > 0) repairs[kind] += count;
   }
+  for (std::size_t i = 0; i < kImuFaults; ++i)
+    if (packets.imu[i] > 0) repairs[fmt::format("IMU samples {}", imu_fault_infos()[i].text)] += packets.imu[i];
   for (std::size_t i = 0; i < external_sensors().size(); ++i) {
     const std::size_t late = packets.external_late[i];
     if (late > 0) repairs[fmt::format("late {} samples dropped", external_sensors()[i].name)] += late;

@@ -14,6 +14,19 @@ namespace edged {
 /// One number for each kind of external sensor, in the order of ExternalSample.
 using ExternalCounts = std::array<std::size_t, std::variant_size_v<ExternalSample>>;
 
+/// Why a sample of the IMU is refused; one that is Spread passes with another stamp.
+enum class ImuFault : std::size_t { NotFinite, Late, BeyondRange, Spike, Repeated, Clipped, SharedStamp, Spread };
+inline constexpr std::size_t kImuFaults = 8;
+
+/// One value for each.
+template <typename T>
+struct ByImuFault : std::array<T, kImuFaults> {
+  using std::array<T, kImuFaults>::operator[];
+  T& operator[](ImuFault fault) { return (*this)[static_cast<std::size_t>(fault)]; }
+  const T& operator[](ImuFault fault) const { return (*this)[static_cast<std::size_t>(fault)]; }
+};
+using ImuFaultCounts = ByImuFault<std::size_t>;
+
 /// Samples of height and velocity sensors that arrived while there was an estimate.
 struct ExternalCounters {
   ExternalCounts used{};      ///< by the estimator
@@ -49,8 +62,7 @@ struct PacketizerCounters {
   std::size_t events_lost = 0;         ///< new events of dropped packets, and those after the last cut
   std::size_t frames_late = 0;         ///< dropped: not after the last cut
   std::size_t frames_missing = 0;      ///< Frames mode: packets without one, as none came for 5 s
-  std::size_t imu_not_finite = 0;      ///< dropped: not a number, or infinite
-  std::size_t imu_late = 0;            ///< dropped: not after the sample before
+  ImuFaultCounts imu{};                ///< dropped IMU samples, and those that were spread
   ExternalCounts external{};           ///< samples of height and velocity sensors in packets
   ExternalCounts external_late{};      ///< dropped: of a time whose packet has been handed out
   ExternalCounts external_lost{};      ///< dropped: before the first packet, after the last, or too many waited

@@ -9,6 +9,7 @@
 #include "bindings.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
+#include "edged/imu/imu_gate.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/pipeline/mode.hpp"
 
@@ -125,9 +126,8 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
                                               {"events_flicker", out.events_flicker},
                                               {"events_lost", out.events_lost},
                                               {"frames_late", out.frames_late},
-                                              {"frames_missing", out.frames_missing},
-                                              {"imu_not_finite", out.imu_not_finite},
-                                              {"imu_late", out.imu_late}};
+                                              {"frames_missing", out.frames_missing}};
+  for (std::size_t i = 0; i < kImuFaults; ++i) counters[std::string(imu_fault_infos()[i].key)] = out.imu[i];
   for (std::size_t i = 0; i < external_sensors().size(); ++i) {
     const std::string name(external_sensors()[i].name);
     counters[name + "_in_packets"] = out.external[i];

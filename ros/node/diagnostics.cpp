@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "edged/core/measurements/external_sensor.hpp"
+#include "edged/imu/imu_gate.hpp"
 
 namespace edged::node {
 namespace {
@@ -54,34 +55,36 @@ void add_input(Values& values, const std::string& topic, const InputCounters& in
 }
 
 struct Count {
-  const char* what;
+  std::string what;
   std::size_t n;
   bool lost;  ///< measurements that are in no packet
 };
 
 std::vector<Count> counts_of(const NodeHealth& health) {
   const auto& [intake, packets, use] = health.odometry;
-  return {{"topics with stamps of another speed", health.wrong_clocks, false},
-          {"events left out, too slow", health.dropped.events, true},
-          {"frames left out, too slow", health.dropped.frames, true},
-          {"of an unknown camera", intake.unknown_camera, true},
-          {"of a camera not used", intake.unused_camera, false},
-          {"absurd stamps", intake.absurd_stamps, true},
-          {"stamps far ahead", intake.far_ahead, true},
-          {"clocks set back", intake.clocks_set_back, true},
-          {"events outside the image", intake.events_outside, true},
-          {"frames unfit", intake.frames_unfit, true},
-          {"no room", intake.no_room, true},
-          {"packets", packets.packets, false},
-          {"packets before the IMU", packets.packets_before_imu, false},
-          {"packets after the IMU", packets.packets_after_imu, false},
-          {"packets dropped, IMU away too long", packets.packets_overflow, true},
-          {"events late", packets.events_late, true},
-          {"events of flickering lamps", packets.events_flicker, false},
-          {"events of dropped packets", packets.events_lost, false},
-          {"frames late", packets.frames_late, true},
-          {"IMU samples not finite", packets.imu_not_finite, true},
-          {"IMU samples late", packets.imu_late, true}};
+  std::vector<Count> counts{{"topics with stamps of another speed", health.wrong_clocks, false},
+                            {"events left out, too slow", health.dropped.events, true},
+                            {"frames left out, too slow", health.dropped.frames, true},
+                            {"of an unknown camera", intake.unknown_camera, true},
+                            {"of a camera not used", intake.unused_camera, false},
+                            {"absurd stamps", intake.absurd_stamps, true},
+                            {"stamps far ahead", intake.far_ahead, true},
+                            {"clocks set back", intake.clocks_set_back, true},
+                            {"events outside the image", intake.events_outside, true},
+                            {"frames unfit", intake.frames_unfit, true},
+                            {"no room", intake.no_room, true},
+                            {"packets", packets.packets, false},
+                            {"packets before the IMU", packets.packets_before_imu, false},
+                            {"packets after the IMU", packets.packets_after_imu, false},
+                            {"packets dropped, IMU away too long", packets.packets_overflow, true},
+                            {"events late", packets.events_late, true},
+                            {"events of flickering lamps", packets.events_flicker, false},
+                            {"events of dropped packets", packets.events_lost, false},
+                            {"frames late", packets.frames_late, true}};
+  for (std::size_t i = 0; i < kImuFaults; ++i)
+    counts.push_back({fmt::format("IMU samples {}", imu_fault_infos()[i].text), packets.imu[i],
+                      static_cast<ImuFault>(i) != ImuFault::Spread});
+  return counts;
 }
 
 }  // namespace

@@ -37,4 +37,20 @@ struct ImuNoiseTuning {
 };
 inline constexpr ImuNoiseTuning kImuNoiseTuning{};
 
+/// What a working sensor does not give [022].
+struct ImuGateTuning {
+  double gyro_range = 70.0, accel_range = 314.0;  ///< [rad/s], [m/s^2] twice the range of common sensors
+  double beyond_largest = 4.0;                    ///< times the largest so far, where the unit may be another one
+  double any_unit = 1e6;                          ///< beyond any sensor in any unit
+  double times_usual_jump = 8.0;                  ///< a spike exceeds so many usual differences, and usual_gyro_jump
+  double returned = 0.25;     ///< share of a spike within which the next sample is back; a knock rings with 0.7
+  std::size_t window = 64;    ///< neighbours from which the share of equal ones is learnt, and its memory of jumps
+  double least_share = 0.15;  ///< equal neighbours at rest of a sensor that has been seen in motion only
+  double rest_steps = 2.5;    ///< changes of the resolution up to which a sensor may rest
+  double suspected = 3.0;     ///< surprise beyond which samples are held: one in 20
+  double refused = 16.0;      ///< surprise that chance does not explain: one in 10 million
+  std::size_t most_of_burst = 1000;  ///< samples with one stamp
+};
+inline constexpr ImuGateTuning kImuGateTuning{};
+
 }  // namespace edged

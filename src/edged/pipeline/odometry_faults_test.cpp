@@ -107,7 +107,7 @@ TEST(Odometry, LosesNothingWhereACamerasClockIsBehindByMoreThanItsDelay) {
       while (odometry.next()) ++steps;
     }
     const PacketizerCounters counters = odometry.counters().packets;
-    EXPECT_EQ(counters.events_late + counters.frames_late + counters.imu_late, 0U);
+    EXPECT_EQ(counters.events_late + counters.frames_late + counters.imu[ImuFault::Late], 0U);
     EXPECT_GT(steps, 20U);
   }
 }
@@ -139,8 +139,8 @@ TEST(Odometry, CountsWhatIsBadAndNeverThrows) {
   EXPECT_EQ(counters.intake.events_outside, 2U);
   EXPECT_EQ(counters.intake.absurd_stamps, 2U);
   EXPECT_EQ(counters.intake.no_room, 1U);
-  EXPECT_EQ(counters.packets.imu_not_finite, 1U);
-  EXPECT_EQ(counters.packets.imu_late, 1U);
+  EXPECT_EQ(counters.packets.imu[ImuFault::NotFinite], 1U);
+  EXPECT_EQ(counters.packets.imu[ImuFault::Late], 1U);
   EXPECT_EQ(with_frames.counters().intake.frames_unfit, 3U);
 }
 

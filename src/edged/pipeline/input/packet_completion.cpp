@@ -38,17 +38,10 @@ void PacketCompletion::drop(const std::deque<Packet>::iterator& packet, Packetiz
 }
 
 void PacketCompletion::add(const ImuSample& sample, PacketizerCounters& counters) {
-  if (!imu_.empty() && sample.t <= imu_.back().t) {
-    ++counters.imu_late;
-    return;
-  }
-  if (!sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) {
-    ++counters.imu_not_finite;
-    return;
-  }
-  imu_.push_back(sample);
+  std::ranges::copy(gate_.push(sample), std::back_inserter(imu_));
+  counters.imu = gate_.counts();
   constexpr Duration kKept = kPipelineTuning.imu_history;
-  if (last_handed_out_ || sample.t - imu_.front().t <= 2 * kKept) return;
+  if (last_handed_out_ || imu_.empty() || sample.t - imu_.front().t <= 2 * kKept) return;
   imu_.erase(imu_.begin(), std::ranges::lower_bound(imu_, sample.t - kKept, {}, &ImuSample::t));
 }
 
@@ -101,6 +94,8 @@ std::optional<Packet> PacketCompletion::next(PacketizerCounters& counters) {
 }
 
 void PacketCompletion::finish(PacketizerCounters& counters) {
+  std::ranges::copy(gate_.finish(), std::back_inserter(imu_));
+  counters.imu = gate_.counts();
   while (!waiting_.empty() && (imu_.empty() || waiting_.back().t > imu_.back().t)) {
     ++counters.packets_after_imu;
     drop(std::prev(waiting_.end()), counters);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/counters.hpp"
+#include "edged/imu/imu_gate.hpp"
 #include "edged/measurement.hpp"
 #include "edged/pipeline/input/packet.hpp"
 
@@ -16,8 +17,9 @@ namespace edged {
 /// Memory is bounded; all that is dropped is counted.
 class PacketCompletion {
  public:
-  /// max_events: in packets that wait. The oldest packets beyond it are dropped.
-  explicit PacketCompletion(int max_events) : max_events_(static_cast<std::size_t>(max_events)) {}
+  /// max_events: in packets that wait. The oldest packets beyond it are dropped. IMU counts continue from so_far.
+  PacketCompletion(int max_events, const ImuFaultCounts& so_far)
+      : max_events_(static_cast<std::size_t>(max_events)), gate_(so_far) {}
 
   /// Adds a packet that has been cut. Packets come in the order of time.
   void add(Packet packet, PacketizerCounters& counters);
@@ -36,7 +38,8 @@ class PacketCompletion {
   std::size_t max_events_;
   std::deque<Packet> waiting_;
   std::size_t waiting_events_ = 0;
-  std::vector<ImuSample> imu_;
+  ImuGate gate_;
+  std::vector<ImuSample> imu_;           // that passed it
   std::deque<ExternalSample> external_;  // in the order of their stamps
   std::optional<Timestamp> last_handed_out_;
 };

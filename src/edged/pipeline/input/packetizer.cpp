@@ -37,7 +37,7 @@ void PacketizerConfig::visit(ConfigFields& fields) {
 Packetizer::Packetizer(const Rig& cameras, const PacketizerConfig& config, const PacketizerCounters& so_far)
     : config_(config),
       frames_(cameras),
-      completion_(config.max_waiting_events),
+      completion_(config.max_waiting_events, so_far.imu),
       counters_(so_far),
       least_offset_(cameras.cameras.front().time_offset) {
   if (config_.min_interval_s > config_.max_interval_s) {

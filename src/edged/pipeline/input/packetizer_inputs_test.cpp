@@ -24,7 +24,7 @@ TEST(Packetizer, CoversEachPacketWithImuInterpolatedAtBothEnds) {
     }
     EXPECT_EQ(imu.back().t, result.packets[i].t);
     for (std::size_t k = 0; k < imu.size(); ++k) {
-      EXPECT_NEAR(imu[k].gyro_B.x(), to_ms(imu[k].t), 1e-6);
+      EXPECT_NEAR(imu[k].gyro_B.x(), to_seconds(imu[k].t), 1e-9);
       if (k > 0) {
         EXPECT_LT(imu[k - 1].t, imu[k].t);
       }
@@ -121,7 +121,7 @@ TEST(Packetizer, DropsAndCountsWhatComesOutOfOrder) {
   EXPECT_EQ(packet->events[0].new_events, 2U);
   EXPECT_EQ(packetizer.counters().events_late, 2U);
   EXPECT_EQ(packetizer.counters().frames_late, 1U);
-  EXPECT_EQ(packetizer.counters().imu_late, 1U);
+  EXPECT_EQ(packetizer.counters().imu[ImuFault::Late], 1U);
 }
 
 TEST(Packetizer, KeepsItsMemoryBoundedWhenTheImuStaysAway) {

@@ -21,7 +21,7 @@ inline constexpr std::size_t kCut = 35;  // events that make a packet
 inline Timestamp ms_stamp(double ms) { return timestamp_from_seconds(1e-3 * ms); }
 inline ImuSample imu_at(double ms) {
   // Linear in time, so that interpolation can be checked.
-  return {ms_stamp(ms), Eigen::Vector3d(ms, 0, 0), Eigen::Vector3d(0, 0, 9.81)};
+  return {ms_stamp(ms), Eigen::Vector3d(1e-3 * ms, 0, 0), Eigen::Vector3d(0, 0, 9.81)};
 }
 
 inline double to_ms(Timestamp t) { return 1e3 * to_seconds(t); }

@@ -25,14 +25,18 @@ NavState in_map(const OdomState& s) { return {s.t, s.T_O_B, s.v_O, s.bias_gyro, 
 
 void StatePrediction::add(const ImuSample& sample) {
   const std::lock_guard lock(mutex_);
-  if (!is_plausible(sample.t) || !sample.gyro_B.allFinite() || !sample.accel_B.allFinite()) return;
+  if (!is_plausible(sample.t)) return;
   const Duration ahead = imu_.empty() ? Duration(0) : sample.t - imu_.back().t;
   if (ahead > kPipelineTuning.imu_history ||
       ahead < -kPipelineTuning.clock_jump) {  // another clock, or a damaged stamp
     imu_.clear();
     states_.clear();
+    gate_ = ImuGate();
   }
-  if (!imu_.empty() && sample.t <= imu_.back().t) return;
+  for (const ImuSample& passed : gate_.push(sample)) follow(passed);
+}
+
+void StatePrediction::follow(const ImuSample& sample) {
   imu_.push_back(sample);
   if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
   if (!states_.empty() && sample.t - states_.front().t > kPipelineTuning.max_prediction) states_.clear();

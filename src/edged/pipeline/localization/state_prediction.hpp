@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/core/odom_state.hpp"
+#include "edged/imu/imu_gate.hpp"
 #include "edged/measurement.hpp"
 #include "edged/state.hpp"
 
@@ -16,7 +17,7 @@ namespace edged {
 /// From any thread, and cheap: a sample costs one step of integration, an estimate one per sample since.
 class StatePrediction {
  public:
-  /// Samples in time order; one that is not, or is not finite, is ignored; after a jump of more than 20 s ahead or 1 s
+  /// Samples in time order; those that the gate refuses are ignored; after a jump of more than 20 s ahead or 1 s
   /// back it starts again. Without an estimate the samples of the last 20 to 40 s are kept.
   void add(const ImuSample& sample);
 
@@ -29,7 +30,10 @@ class StatePrediction {
   std::optional<NavState> at(Timestamp t) const;
 
  private:
+  void follow(const ImuSample& sample);
+
   mutable std::mutex mutex_;
+  ImuGate gate_;
   std::vector<ImuSample> imu_;     // with an estimate: the first at its time
   std::vector<OdomState> states_;  // at the samples; empty without an estimate
 };
