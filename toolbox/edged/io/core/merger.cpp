@@ -109,7 +109,7 @@ void ArrivalQueue<T>::insert(T item) {
   sorted_.insert(place, std::move(item));
 }
 
-Merger::Merger(Repairs& repairs) : repairs_(repairs), imu_("imu", false, 100'000, repairs) {
+Merger::Merger(Repairs& repairs) : repairs_(repairs), imu_("imu", true, 100'000, repairs) {
   for (const ExternalSensor& sensor : external_sensors())
     external_.emplace_back(std::string(sensor.name), false, 100'000, repairs);
   expect({});

@@ -128,16 +128,18 @@ TEST(Merger, LateItemsAreSortedInWhilePossibleAndCountedAlways) {
   EXPECT_EQ(repairs.counts().at("events: out of order, dropped"), 1u);
 }
 
-TEST(Merger, RepeatedStampsAreLeftOutExceptOfEvents) {
+TEST(Merger, RepeatedStampsAreLeftOutOfFramesOnly) {
   Repairs repairs;
   Merger merger(repairs);
-  merger.expect({{"events"}, {}, true});
+  merger.expect({{"events"}, {"frames"}, true});
   merger.push(imu_at(1));
   merger.push(imu_at(1));
   merger.push(events_at({1, 1}));
+  merger.push(Frame{at_ms(1), "frames", {}});
+  merger.push(Frame{at_ms(1), "frames", {}});
   merger.finish();
-  EXPECT_EQ(popped(merger), "I1 E1,1");
-  EXPECT_EQ(repairs.counts().at("imu: duplicate stamp"), 1u);
+  EXPECT_EQ(popped(merger), "I1 I1 E1,1 F1");
+  EXPECT_EQ(repairs.counts().at("frames: duplicate stamp"), 1u);
 }
 
 TEST(Merger, OneStampFarAheadDoesNotEndTheStream) {

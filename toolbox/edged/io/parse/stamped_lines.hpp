@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads items with stamps, one per line, and returns them in strictly increasing time order.
+// Reads items with stamps, one per line, and returns them in time order.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -23,7 +24,7 @@ namespace edged {
 /// How to treat a last line without line end: numbers may have lost digits, but a file name is checked anyway.
 enum class LastLine { MustEnd, MayLackEnd };
 
-/// T has a `time_of`. Unreadable and late lines and repeated stamps are left out and counted.
+/// T has a `time_of`. Unreadable and late lines and, but of IMU samples, repeated stamps are left out and counted.
 template <typename T>
 class StampedLines {
  public:
@@ -60,6 +61,7 @@ class StampedLines {
 
  private:
   static constexpr Duration kWrongStamp = std::chrono::milliseconds(100);
+  static constexpr bool kMayRepeat = std::is_same_v<T, ImuSample>;  // the gate spreads bursts
 
   /// One item is held back, so that a single wrong stamp far ahead is dropped instead of everything after it.
   void advance() {
@@ -67,7 +69,7 @@ class StampedLines {
     while (auto item = next_passed()) {
       if (!held_) {
         held_ = std::move(item);
-      } else if (time_of(*item) > time_of(*held_)) {
+      } else if (time_of(*item) > time_of(*held_) || (kMayRepeat && time_of(*item) == time_of(*held_))) {
         next_ = std::exchange(held_, std::move(item));
         return;
       } else if (time_of(*item) == time_of(*held_)) {
