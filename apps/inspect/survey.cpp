@@ -258,7 +258,10 @@ SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<voi
   try {
     read_through(dataset, quiet, "read", [&](const Measurement& measurement) {
       surveyor.add(measurement);
-      if (also) also(measurement);
+      if (also && std::holds_alternative<ImuSample>(measurement))
+        std::ranges::for_each(surveyor.imu_passed(), also);
+      else if (also)
+        also(measurement);
       return true;
     });
   } catch (const InputError& error) {

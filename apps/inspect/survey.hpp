@@ -23,7 +23,7 @@ struct SurveyRun {
 };
 
 /// Surveys a recording, with a status line. Ends early, with what was read so far, when the user interrupts. also:
-/// called with every measurement; may be empty.
+/// called with every measurement that passes the gate of the IMU; may be empty.
 SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also);
 
 }  // namespace edged

@@ -91,6 +91,27 @@ class Verdict(WithFlight):
                 self.assertFalse(metrics["trusted"])
                 self.assertIn(result.returncode, (4, 5))
 
+    def test_imu_samples_that_no_sensor_gives_are_gaps_and_named_with_their_time(self):
+        rows = [line.split() for line in (self.flight / "imu.txt").read_text().splitlines()]
+        first = round(1.2 * len(rows) / (float(rows[-1][0]) - float(rows[0][0])))  # sample after 1.2 s
+
+        def with_gyro(count, change):
+            return lambda _: "".join(" ".join(row[:4] + (change(row[4:]) if first <= i < first + count else row[4:])) + "\n"
+                                     for i, row in enumerate(rows))
+        at = rf"{float(rows[first][0]):.2f}\d s"
+        for text, change in {rf"99 IMU samples that repeat a reading: gyro for 0\.099 s from {at}":
+                                 with_gyro(100, lambda _: rows[first][4:]),
+                             rf"1 IMU samples beyond what a sensor measures: the first at {at}":
+                                 with_gyro(1, lambda g: ["1e300", *g[1:]]),
+                             rf"1 IMU samples far from both neighbours: the first at {at}":
+                                 with_gyro(1, lambda g: [g[0], "6.0", g[2]])}.items():
+            with self.subTest(text=text):
+                recording = self.changed("imu.txt", change)
+                self.assertRegex(edged("doctor", recording).stdout, rf"warning +{text}")
+                _, metrics = self.run_it(recording, "frames")
+                self.assertTrue(any(re.search(text, f["text"]) for f in metrics["findings"]), metrics["findings"])
+                self.assertTrue(any(kind.startswith("IMU samples") for kind in metrics["repairs"]), metrics["repairs"])
+
     def test_an_imu_clock_that_is_corrected(self):
         begin = float((self.flight / "imu.txt").read_text().split()[0])
         fast = self.changed("imu.txt", with_imu(lambda t, a, g: (begin + 2 * (t - begin), a, g)))

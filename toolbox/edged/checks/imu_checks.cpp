@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -48,6 +49,42 @@ void check_frozen(const char* sensor, const char* unit, const FrozenReadings& f,
     out.error(fmt::format("{} does not change for {:.1f} s from {:.3f} s: it reads {}", sensor, to_seconds(f.longest),
                           to_seconds(f.since), value),
               "the driver repeats its last sample: remove these samples, then they count as a gap");
+}
+
+std::string axes_text(unsigned axes) {
+  switch (axes) {
+    case 0b111111:
+      return "gyro and accelerometer";
+    case 0b000111:
+      return "gyro";
+    case 0b111000:
+      return "accelerometer";
+    default: {
+      const int axis = std::countr_zero(axes);
+      return fmt::format("{}'s {} axis", axis < 3 ? "gyro" : "accelerometer", "xyz"[axis % 3]);
+    }
+  }
+}
+
+/// What the gate of a run refuses, or gives another stamp.
+void check_gate(const CheckInput& input, Findings& out) {
+  for (std::size_t i = 0; i < kImuFaults; ++i) {
+    const ImuFaultRecord& fault = input.recording.imu_faults[i];
+    if (fault.count == 0) continue;
+    const std::string where =
+        fault.axes == 0 ? fmt::format("the first at {:.3f} s", to_seconds(fault.from))
+                        : fmt::format("{} for {:.3f} s from {:.3f} s on is the longest", axes_text(fault.axes),
+                                      to_seconds(fault.longest), to_seconds(fault.from));
+    out.warn(fmt::format("{} IMU samples {}: {}", fault.count, imu_fault_infos()[i].text, where),
+             std::string(imu_fault_infos()[i].remedy));
+  }
+  // Readers drop some before the gate.
+  const auto dropped = input.recording.repairs.find("imu: out of order, dropped");
+  const std::size_t late = input.recording.imu_faults[ImuFault::Late].count +
+                           (dropped == input.recording.repairs.end() ? 0 : dropped->second);
+  if (late > input.recording.imu.count)
+    out.imu_unusable(fmt::format("{} IMU samples are late, {} are not", late, input.recording.imu.count),
+                     std::string(imu_fault_infos()[ImuFault::Late].remedy));
 }
 
 void check_frozen_readings(const CheckInput& input, Findings& out) {
@@ -166,7 +203,7 @@ void check_gyro_unit(const CheckInput& input, Findings& out) {
                          compared ? "" : " (its unit is not checked against a camera)"));
 }
 
-constexpr Check kImuChecks[] = {check_imu_rate, check_clock,      check_frozen_readings,
+constexpr Check kImuChecks[] = {check_imu_rate, check_gate,       check_clock,    check_frozen_readings,
                                 check_columns,  check_accel_unit, check_gyro_unit};
 
 }  // namespace

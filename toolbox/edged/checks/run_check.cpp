@@ -127,15 +127,17 @@ void RunCheck::add(const Measurement& measurement) {
                  thinning_.next(measurement));
   const auto first = first_stamp(measurement), last = last_stamp(measurement);
   if (!first) return;
-  if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
+  if (std::holds_alternative<ImuSample>(measurement)) {
     imu_.extend(*first, *last);
-    accel_axes_.add(*sample);
+    for (const ImuSample& sample : collector_.imu_passed()) accel_axes_.add(sample);
     const bool all_told = std::ranges::all_of(cameras_, [](const Camera& camera) {
       return camera.deferred || (camera.done && agrees(camera.agreement));  // an IMU on another clock may lag
     });
     if (all_told) return;
-    gyro_.add(*sample);
-    rate_ += kNewest * (sample->gyro_B.norm() - rate_);
+    for (const ImuSample& sample : collector_.imu_passed()) {
+      gyro_.add(sample);
+      rate_ += kNewest * (sample.gyro_B.norm() - rate_);
+    }
   } else if (name) {
     visual_.extend(*first, *last);
     for (Camera& camera : cameras_) follow(camera, measurement);

@@ -92,8 +92,7 @@ void RecordingCollector::add(const Measurement& measurement, Detail detail, std:
     ++measured_frames_;
     watch_image(*frame);
   } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
-    imu_.add(sample->t, sample->t);
-    imu_details_.add(*sample);
+    for (const ImuSample& passed : gate_.push(*sample)) imu_.add(passed.t, passed.t), imu_details_.add(passed);
   } else if (const auto* external = std::get_if<ExternalSample>(&measurement)) {
     external_[std::string(sensor_of(*external).name)].add(*external);
   }
@@ -135,6 +134,7 @@ RecordingStatistics RecordingCollector::so_far() const {
   statistics.imu = imu_.result();
   statistics.event_details = event_details_.result();
   statistics.imu_details = imu_details_.result();
+  statistics.imu_faults = gate_.faults();
   statistics.image_size = image_size_;
   for (const RecordingCollector& camera : more_) statistics.more.push_back(camera.so_far());
   for (const auto& [name, collector] : external_) statistics.external[name] = collector.result();

@@ -7,6 +7,7 @@
 #include <map>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "edged/checks/statistics/imu_statistics.hpp"
 #include "edged/checks/statistics/stream_statistics.hpp"
 #include "edged/dataset.hpp"
+#include "edged/imu/imu_gate.hpp"
 
 namespace edged {
 
@@ -29,7 +31,8 @@ struct RecordingStatistics {
   DatasetInfo info;
   StreamStatistics events, frames, imu;
   EventStatistics event_details;
-  ImuStatistics imu_details;
+  ImuStatistics imu_details;  ///< of the samples that pass the gate, as are those of `imu`
+  ImuFaultRecords imu_faults{};
   cv::Size image_size;           ///< size of the first image
   double mean_brightness = 0.0;  ///< mean over all images, 0 to 255
   ExternalStatisticsByName external;
@@ -60,6 +63,8 @@ class RecordingCollector {
   };
   /// every: that of EventCollector::add.
   void add(const Measurement& measurement, Detail detail = Detail::All, std::size_t every = 1);
+  /// The IMU samples that passed the gate with the newest one.
+  std::span<const ImuSample> imu_passed() const { return gate_.passed(); }
   /// The statistics of the measurements so far, without ground truth and repairs.
   RecordingStatistics so_far() const;
   /// The complete statistics, after the last measurement. truth: that of the dataset, which is slow to read.
@@ -71,6 +76,7 @@ class RecordingCollector {
 
   DatasetInfo info_;
   StreamCollector events_, frames_, imu_;
+  ImuGate gate_;
   EventCollector event_details_;
   ImuCollector imu_details_;
   std::vector<RecordingCollector> more_;  ///< one for each further camera
