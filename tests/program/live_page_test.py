@@ -257,6 +257,8 @@ class LivePage(WithFlight):
         self.addCleanup(browser.close)
         views = [(width, dark) for width in (360, 1600) for dark in (False, True)]
         browser.show(1600, 900)
+        self.flight = self.folder / "long"  # the first dense points come after some four seconds
+        edged("simulate", "--duration", 10, "--seed", 2, "--out", self.flight, "--quiet")
         with self.serving("--live", "--dense") as (_, url):
             browser.open(url)
             browser.wait_for("document.querySelector('.says')?.textContent === 'Running, with a good pose.'")
