@@ -14,7 +14,7 @@ namespace edged {
 /// One number for each kind of external sensor, in the order of ExternalSample.
 using ExternalCounts = std::array<std::size_t, std::variant_size_v<ExternalSample>>;
 
-/// Why a sample of the IMU is refused; one that is Spread passes with another stamp.
+/// Why a sample of the IMU is refused. Clipped ones pass with a mark, those that are Spread with another stamp.
 enum class ImuFault : std::size_t { NotFinite, Late, BeyondRange, Spike, Repeated, Clipped, SharedStamp, Spread };
 inline constexpr std::size_t kImuFaults = 8;
 

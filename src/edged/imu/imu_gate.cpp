@@ -24,7 +24,7 @@ const ByImuFault<ImuFaultInfo>& imu_fault_infos() {
       {"imu_beyond_range", "beyond what a sensor measures", kDriver},
       {"imu_spikes", "far from both neighbours", kDriver},
       {"imu_repeated", "that repeat a reading", "the driver repeats its last sample, or the sensor stopped: a gap"},
-      {"imu_clipped", "at the end of the range", "set the sensor to a larger range: clipped readings are a gap"},
+      {"imu_clipped", "at the end of the range", "set the sensor to a larger range: what is beyond is unknown"},
       {"imu_shared_stamps", "lost, of one stamp", "let the driver stamp each sample"},
       {"imu_spread", "of one stamp, spread evenly", "let the driver stamp each sample, not each transfer of several"},
   }}};
@@ -118,8 +118,14 @@ void ImuGate::judge(const ImuSample& sample) {
   if (repeated.surprise > kImuGateTuning.suspected) {
     held_.push_back(sample);
     if (repeated.surprise < kImuGateTuning.refused) return;
-    for (const ImuSample& held : std::exchange(held_, {}))
-      count(fault_of(repeated), repeated.since, held.t - repeated.since, repeated.axes);
+    const ImuFault fault = fault_of(repeated);
+    for (ImuSample& held : std::exchange(held_, {})) {
+      count(fault, repeated.since, held.t - repeated.since, repeated.axes);
+      if (fault != ImuFault::Clipped) continue;
+      held.gyro_clipped = (repeated.axes & kGyroAxes) != 0;
+      held.accel_clipped = (repeated.axes & kAccelAxes) != 0;
+      passed_.push_back(*(last_ = held));
+    }
     return;
   }
   for (const ImuSample& held : std::exchange(held_, {})) pass(held);

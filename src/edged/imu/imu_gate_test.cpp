@@ -171,13 +171,16 @@ TEST(ImuGate, TakesASensorThatIsReadTwiceAsOftenAsItMeasuresForWhatItIs) {
   EXPECT_EQ(gated(samples).passed.size(), samples.size());
 }
 
-TEST(ImuGate, NamesAnAxisThatStaysAtTheLargestReadingClipped) {
+TEST(ImuGate, MarksAnAxisThatStaysAtTheLargestReadingAsClipped) {
   std::vector<ImuSample> samples = in_hand({1000.0});
   for (ImuSample& sample : samples) sample.gyro_B = sample.gyro_B.cwiseMax(-1.2).cwiseMin(1.2);
   const Gated result = gated(samples);
   const auto [clipped, others] = counts(result, ImuFault::Clipped);
   EXPECT_GT(clipped, 1000U);
   EXPECT_EQ(others, 0U);
+  EXPECT_EQ(result.passed.size(), samples.size());
+  EXPECT_EQ(std::ranges::count(result.passed, true, &ImuSample::gyro_clipped), std::ptrdiff_t(clipped));
+  EXPECT_EQ(std::ranges::count(result.passed, true, &ImuSample::accel_clipped), 0);
 }
 
 TEST(ImuGate, ASoundKnockIsNoSpike) {

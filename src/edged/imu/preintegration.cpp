@@ -17,7 +17,12 @@ using Eigen::Vector3d;
 ImuSample interpolate_samples(const ImuSample& a, const ImuSample& b, Timestamp t) {
   const double span = to_seconds(b.t - a.t);
   const double share = span > 0.0 ? to_seconds(t - a.t) / span : 0.0;
-  return {t, a.gyro_B + share * (b.gyro_B - a.gyro_B), a.accel_B + share * (b.accel_B - a.accel_B), in_gap(a, b)};
+  return {t,
+          a.gyro_B + share * (b.gyro_B - a.gyro_B),
+          a.accel_B + share * (b.accel_B - a.accel_B),
+          in_gap(a, b),
+          a.gyro_clipped || b.gyro_clipped,
+          a.accel_clipped || b.accel_clipped};
 }
 
 /// samples cover t.
@@ -139,8 +144,10 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
   const bool gap = in_gap(a, b);
-  const bool gyro_clipped = out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
-  const bool accel_clipped = out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
+  const bool gyro_clipped =
+      a.gyro_clipped || b.gyro_clipped || out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
+  const bool accel_clipped =
+      a.accel_clipped || b.accel_clipped || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
   const double inflation = noise_.saturation_inflation;
   const double gyro_sigma = density(noise_.gyro_noise, gap, kImuTuning.gap_gyro_noise, gyro_clipped, inflation);
   const double accel_sigma = density(noise_.accel_noise, gap, kImuTuning.gap_accel_noise, accel_clipped, inflation);
