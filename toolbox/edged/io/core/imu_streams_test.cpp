@@ -36,7 +36,7 @@ std::unique_ptr<Dataset> twice_as_fast() {
   for (int i = 0; i < 10; ++i) {
     dataset->measurements.push_back(ImuSample{.t = in_ms(20 * i), .accel_B = {0, 0, static_cast<double>(i)}});
     if (i < 5)
-      dataset->measurements.push_back(
+      dataset->measurements.emplace_back(
           EventBatch{"events", {{in_ms(20 * i + 2), 1, 1, true}, {in_ms(20 * i + 14), 1, 1, true}}});
   }
   return dataset;
