@@ -56,6 +56,7 @@ struct StatusConfig {
   double degraded_strain = 0.75;    ///< EstimatorResult::imu_strain [sigma]: usual is 0.05 to 0.4
   double lost_strain = 0.85;        ///< the first time; see StatusMonitor
   double max_scale_sigma = 0.2;     ///< relative, see ScaleUncertainty
+  double max_place_sigma = 0.15;    ///< [m] after a gap or a loss
   double max_velocity_sigma = 0.3;  ///< [m/s] usual is below 0.2 in the gentlest motion
   void visit(ConfigFields& fields);
 };

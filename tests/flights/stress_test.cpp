@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "edged/core/measurements/measurement_stamps.hpp"
 #include "end_to_end.hpp"
 
 namespace edged {
@@ -104,6 +105,20 @@ TEST(Stress, ASecondWithoutEventsStaysGoodByTheFramesAndIsSurvivedWithoutThem) {
 TEST(Stress, AThirdOfASecondWithoutImuIsSurvived) {
   const Flight flight = disturbed_flight(DisturbanceKind::ImuGap, 0.3);
   for (const Mode mode : kAllModes) EXPECT_EQ(withstand(flight, mode).statistics.times_lost(), 0U);
+}
+
+/// Tracks that survive bridge half a second; after two the body is found again in the map.
+TEST(Stress, ASilenceOfAllSensorsIsSurvived) {
+  for (const double length_s : {0.5, 2.0}) {
+    SCOPED_TRACE(length_s);
+    Flight flight = flight_of("poster", 13.0);
+    std::erase_if(flight.measurements, [&](const Measurement& measurement) {
+      const double t = to_seconds(last_stamp(measurement).value_or(Timestamp()));
+      return t > 8.0 && t < 8.0 + length_s;
+    });
+    for (const Mode mode : {Mode::Fused, Mode::Frames})
+      EXPECT_EQ(withstand(flight, mode).statistics.times_lost(), length_s > 1.0 ? 1U : 0U);
+  }
 }
 
 TEST(Stress, ATurnBeyondTheGyrosRangeIsSurvived) {

@@ -95,6 +95,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   standstill_.add(input.motion.samples(), input.observations, input.events_quiet, gyro_bias(),
                   [&] { return known_motion(input); });
   result.noise_at_rest = standstill_.noise_at_rest();
+  if (input.motion.gap_s() > 0.0) supported_at_ = input.t;  // a turn in place is found by the gyro
   const std::optional<double> turning = turning_in_place(input);
   result.standstill = standstill_.still() || stationary_by_vision() || turning;
   if (start(input, result) || !initialized_) return result;

@@ -152,7 +152,7 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   const double gyro_sigma = density(noise_.gyro_noise, gap, kImuTuning.gap_gyro_noise, gyro_clipped, inflation);
   const double accel_sigma = density(noise_.accel_noise, gap, kImuTuning.gap_accel_noise, accel_clipped, inflation);
   gyro_clipped_ = gyro_clipped_ || gyro_clipped;
-  gapped_ = gapped_ || gap;
+  if (gap) gap_s_ += dt;
   const double gyro_jump = gap || gyro_clipped ? 0.0 : sigma_of_jump(a.gyro_B, b.gyro_B, kImuTuning.usual_gyro_jump);
   const double accel_jump =
       gap || accel_clipped ? 0.0 : sigma_of_jump(a.accel_B, b.accel_B, kImuTuning.usual_accel_jump);

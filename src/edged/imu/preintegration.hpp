@@ -71,7 +71,9 @@ class Preintegration {
   /// Whether some sample reached the gyro's range: the rotation is known from the cameras alone.
   bool gyro_clipped() const { return gyro_clipped_; }
   /// Whether no sample was clipped or missing (kMaxSampleInterval).
-  bool gyro_trusted() const { return !gyro_clipped_ && !gapped_; }
+  bool gyro_trusted() const { return !gyro_clipped_ && gap_s_ == 0.0; }
+  /// Duration without samples [s].
+  double gap_s() const { return gap_s_; }
 
  private:
   void integrate_step(const ImuSample& a, const ImuSample& b);
@@ -87,7 +89,8 @@ class Preintegration {
                   d_dv_d_ba_ = Eigen::Matrix3d::Zero(), d_dp_d_bg_ = Eigen::Matrix3d::Zero(),
                   d_dp_d_ba_ = Eigen::Matrix3d::Zero();
   Matrix9d covariance_ = Matrix9d::Zero();
-  bool gyro_clipped_ = false, gapped_ = false;
+  bool gyro_clipped_ = false;
+  double gap_s_ = 0.0;
 };
 
 /// The state at the last sample, from the state at the first. Biases are unchanged.

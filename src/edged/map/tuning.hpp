@@ -55,6 +55,7 @@ struct MapTuning {
   // After a loss (decisions 026, 029, 045). Dead reckoning is off by at most this, and this more per second.
   double dead_reckoning_m = 0.5, dead_reckoning_mps = 0.5;
   double dead_reckoning_radps = 0.01;
+  double gap_mps = 2.0, gap_radps = 1.5;    ///< the same of a gap of all sensors
   double max_turn_rad = 0.1;                ///< bound on the rotation error of the odometry at any time; grows with it
   double relocalization_interval_s = 0.09;  ///< between images, after a loss
   double young_drift_factor = 5.0;          ///< on the drift soon after a start, when the scale is inaccurate

@@ -16,7 +16,8 @@ struct PipelineTuning {
   Duration clock_jump = std::chrono::seconds(1);  ///< a stamp so far behind others of its sensor is of another clock
   Duration clock_confirmation =
       std::chrono::milliseconds(500);                 ///< span of such stamps after which the clock counts as set back
-  Duration recording_gap = std::chrono::seconds(1);   ///< without measurements: no packets are cut by time inside
+  Duration recording_gap = std::chrono::seconds(1);   ///< between the clocks of sensors that work
+  Duration silence = std::chrono::milliseconds(200);  ///< of all sensors: no packets are cut by time inside
   Duration imu_history = std::chrono::seconds(20);    ///< IMU samples kept before the first packet or estimate
   Duration max_prediction = std::chrono::seconds(1);  ///< limit of newest_state: dead reckoning soon drifts by metres
   // Packets (decision 010).
@@ -55,11 +56,15 @@ struct PipelineTuning {
   double strain_limit_growth = 1.5;  ///< factor on the limits of strain after each loss by it
   double max_bias_change = 3.0;      ///< [sigma]; up to 2.1 without dynamic objects
   Duration bias_history = std::chrono::seconds(10);
-  double gyro_drift = 2e-3;      ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
-  double accel_drift = 0.02;     ///< drift of the accelerometer's bias [m/s^2]
-  double scale_memory_s = 10.0;  ///< of motion, by which the scale is judged
-  double least_travel_m = 0.15;  ///< of a shorter way the share does not matter: a fifth of it is 3 cm
-  double velocity_share = 0.1;   ///< of the speed: so uncertain may the velocity be as well
+  double gyro_drift = 2e-3;       ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
+  double accel_drift = 0.02;      ///< drift of the accelerometer's bias [m/s^2]
+  double scale_memory_s = 10.0;   ///< of motion, by which the scale is judged
+  double least_travel_m = 0.15;   ///< of a shorter way the share does not matter: a fifth of it is 3 cm
+  double velocity_share = 0.1;    ///< of the speed: so uncertain may the velocity be as well
+  double unknown_velocity = 1.5;  ///< [m/s] sigma; for so long: Lost
+  Duration velocity_unknown_after = std::chrono::milliseconds(500);  ///< cameras need up to 0.3 s after a gap
+  double max_gap_s = 0.2;      ///< of all sensors; after it the place in the map is searched anew
+  double longest_gap_s = 1.0;  ///< beyond it Lost: a hand or a drone may have turned by more than the view
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

@@ -155,6 +155,13 @@ MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& 
   return record;
 }
 
+std::vector<MarginalizedKeyframe> keyframe_records(const Window& window) {
+  std::vector<MarginalizedKeyframe> records;
+  for (const auto& [id, state] : window.states())
+    if (state.keyframe) records.push_back(record_of(window, id));
+  return records;
+}
+
 void marginalize_parameter(Window& window, BlockKind kind) {
   std::set<BlockKey> leaving;
   for (const BlockKey& key : window.prior()->blocks()) {

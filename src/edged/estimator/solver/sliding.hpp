@@ -25,6 +25,9 @@ struct MarginalizedKeyframe {
 /// youngest keyframe with the observations from there on, so that no measurement is used twice.
 MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
 
+/// The records of all keyframes of a window, oldest first.
+std::vector<MarginalizedKeyframe> keyframe_records(const Window& window);
+
 /// Removes a random-walk parameter that has jumped, with its factors, and from the prior.
 void marginalize_parameter(Window& window, BlockKind kind);
 

@@ -76,7 +76,7 @@ void Packetizer::add(Measurement measurement) {
 }
 
 void Packetizer::advance_clock(Timestamp recorded, Timestamp complete) {
-  if (last_recorded_ && recorded - *last_recorded_ > kPipelineTuning.recording_gap)
+  if (last_recorded_ && recorded - *last_recorded_ > kPipelineTuning.silence)
     heartbeat_from_ = recorded + event_offset_;
   if (!last_recorded_ || recorded > *last_recorded_) last_recorded_ = recorded;
   complete_ = std::max(complete_, complete);

@@ -34,13 +34,15 @@ class ImuPropagator {
   bool started() const { return started_; }
   /// The gyro was saturated until the last prediction: the rotation until then is unknown.
   bool gyro_was_saturated() const { return gyro_was_saturated_; }
+  /// Duration without samples in the last prediction [s].
+  double gap_s() const { return gap_s_; }
   /// T_O_B a few milliseconds after now, at the present rate and velocity.
   SE3 extrapolate(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
   const std::vector<StampedPose>& poses() const { return T_O_B_; }
 
  private:
-  void bridge(std::vector<ImuSample>& imu) const;
+  std::vector<ImuSample> bridged(const std::vector<ImuSample>& imu) const;
 
   ImuNoiseEstimator noise_;
   Duration history_;
@@ -48,7 +50,8 @@ class ImuPropagator {
   bool started_ = false;
   bool gyro_saturated_ = false, gyro_was_saturated_ = false;  ///< in the last prediction; in the one before alone
   double predicted_s_ = 0.0;                           ///< duration of the last prediction by trusted samples, else 0
-  double bridged_s_ = 0.0;                             ///< duration of the last prediction if it bridged a gap, else 0
+  double gap_s_ = 0.0;                                 ///< without samples in the last prediction
+  bool in_gap_ = false;                                ///< at its end
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;
 };

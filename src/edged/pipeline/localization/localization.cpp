@@ -68,6 +68,7 @@ ExternalCounters Localization::external_counters() const {
 void Localization::begin_epoch() {
   session_ = new_session(session_.bias_prior, external_counters(), Timestamp::min());
   mapper_.begin_epoch();
+  place_ = {};
   status_.set_lost("a clock was set back");
   if (attitude_) attitude_.emplace(noise_);
 }
@@ -75,19 +76,27 @@ void Localization::begin_epoch() {
 Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
   const auto timer = timings_->measure("predict");
   if (attitude_) attitude_->add(imu);
-  return body_.predict(imu, session_.estimator.initialized() || imu.back().t < session_.dead_reckoning_until);
+  Preintegration motion =
+      body_.predict(imu, session_.estimator.initialized() || imu.back().t < session_.dead_reckoning_until);
+  if (!session_.estimator.initialized()) place_.dead_reckon(motion);
+  return motion;
 }
 
 LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen,
                                          std::vector<ExternalSample> external) {
   const Timestamp t = motion.end();
+  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.max_gap_s) map_window();
+  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.longest_gap_s)
+    return end_at_gap(motion, seen);
   LocalizationOutput output;
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
       output.correction);
+  session_.uncertainty.place_sigma = place_.sigma();
   const TrackingStatus of_odometry = status_.update(result, session_.uncertainty, session_.estimator.initialized(), t);
   const bool relocalized = update_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
+  if (relocalized) place_.relocalize();
   update_covariance(t);
   if (is_tracking(status)) mapper_.add_pose(body_.now());
   output.step = describe(t, status, std::move(result));
@@ -97,10 +106,34 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.step.loop_closure = mapper_.loop_closure(t);
   output.correction.ended = of_odometry == TrackingStatus::Lost && session_.estimator.initialized();
   if (output.correction.ended) {
+    if (status_.vision_lost()) map_window();
+    if (!status_.vision_lost() && !status_.contradicted()) place_.end_estimate(velocity_sigma_in_place());
     session_ = new_session(prior_after_loss(), external_counters(),
                            status_.vision_lost() ? t + kPipelineTuning.dead_reckoning : t);
   }
   output.correction.provisional = session_.estimator.provisional();
+  return output;
+}
+
+/// The map takes the keyframes of the window: by them the body finds its place again.
+void Localization::map_window() {
+  if (!config_.map.enabled) return;
+  for (const MarginalizedKeyframe& record : keyframe_records(session_.estimator.window())) mapper_.add_keyframe(record);
+}
+
+/// Nothing is estimated across a gap whose end shows another view.
+LocalizationOutput Localization::end_at_gap(const Preintegration& gap, const VisionOutput& seen) {
+  const Timestamp t = gap.end();
+  LocalizationOutput output;
+  status_.set_lost(fmt::format("no sensor for {:.1f} s", gap.gap_s()));
+  mapper_.reset_uncertainty(body_.now(), gap.gap_s());
+  output.step = describe(t, TrackingStatus::Lost, {});
+  for (const CameraObservations& view : seen.observations)
+    for (const FeatureObservation& feature : view.features) output.correction.outliers.push_back(feature.id);
+  output.correction.ended = true;
+  place_.end_estimate(velocity_sigma_in_place());
+  place_.dead_reckon(gap);
+  session_ = new_session(session_.biases.newest(), external_counters(), t);
   return output;
 }
 
@@ -148,8 +181,9 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
     session_.uncertainty.scale_sigma.reset();
     mapper_.restart(T_new_old, body_.now());
-  } else if (body_.gyro_was_saturated()) {
-    mapper_.reset_uncertainty(body_.now());
+  } else if (body_.gyro_was_saturated() || body_.gap_s() > kPipelineTuning.max_gap_s) {
+    mapper_.reset_uncertainty(body_.now(), body_.gap_s());
+    if (body_.gap_s() > kPipelineTuning.max_gap_s) place_.end_gap();
   }
   return result;
 }
@@ -231,6 +265,12 @@ std::optional<std::string> Localization::save_map() const {
   return to_bytes(*map);
 }
 
+/// After a loss without dead reckoning the body stays in place, which is wrong by all of its velocity.
+double Localization::velocity_sigma_in_place() const {
+  const double variance = session_.covariance ? session_.covariance->velocity.diagonal().maxCoeff() : 0.0;
+  return std::hypot(std::sqrt(variance), body_.now().v_O.norm());
+}
+
 void Localization::update_covariance(Timestamp t) {
   if (session_.covariance && t - session_.covariance_at < kPipelineTuning.covariance_interval) return;
   const auto timer = timings_->measure("covariance");
@@ -239,10 +279,12 @@ void Localization::update_covariance(Timestamp t) {
   if (const std::optional<Matrix15d> P = session_.estimator.covariance()) {
     const OdomState& newest = session_.estimator.newest();
     if (!session_.estimator.provisional()) session_.uncertainty.bias_change = session_.biases.add(newest, *P);
-    session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
-    session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
+    place_.update(std::sqrt(P->diagonal().head<3>().maxCoeff()), config_.status.max_place_sigma);
     session_.uncertainty.velocity_sigma = std::max(
         0.0, std::sqrt(P->diagonal().segment<3>(6).maxCoeff()) - kPipelineTuning.velocity_share * newest.v_O.norm());
+    if (session_.uncertainty.velocity_sigma < config_.status.max_velocity_sigma)  // else unknown, whatever the scale
+      session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
+    session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
     const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
     session_.covariance = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
                            R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};

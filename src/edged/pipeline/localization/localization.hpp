@@ -17,6 +17,7 @@
 #include "edged/pipeline/localization/bias_history.hpp"
 #include "edged/pipeline/localization/imu_propagator.hpp"
 #include "edged/pipeline/localization/online_calibration.hpp"
+#include "edged/pipeline/localization/place_uncertainty.hpp"
 #include "edged/pipeline/localization/scale_uncertainty.hpp"
 #include "edged/pipeline/localization/status_monitor.hpp"
 #include "edged/pipeline/mapping/mapper.hpp"
@@ -81,6 +82,9 @@ class Localization {
   std::string missing_localization() const;
   std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void update_covariance(Timestamp t);
+  double velocity_sigma_in_place() const;
+  void map_window();
+  LocalizationOutput end_at_gap(const Preintegration& gap, const VisionOutput& seen);
   Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
 
   OdometryConfig config_;
@@ -90,6 +94,7 @@ class Localization {
   Session session_;
   Mapper mapper_;
   StatusMonitor status_;
+  PlaceUncertainty place_;
   ImuPropagator body_;
   std::optional<AttitudeFilter> attitude_;  ///< until the first start
 };

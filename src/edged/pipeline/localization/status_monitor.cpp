@@ -24,6 +24,10 @@ void StatusConfig::visit(ConfigFields& fields) {
   fields.add("max_velocity_sigma", max_velocity_sigma,
              {"m/s", 0.01, 100,
               "The status is Degraded while the velocity is less certain than this and a tenth of the speed."});
+  fields.add("max_place_sigma", max_place_sigma,
+             {"m", 0.01, 1000,
+              "The status is Degraded while a gap of all sensors or a loss leaves the position in the map less certain "
+              "than this, until the body is relocalized."});
   fields.add("max_scale_sigma", max_scale_sigma,
              {"", 0.01, 10,
               "The status is Degraded while the way travelled is uncertain by more than this share: the motion is too "
@@ -32,7 +36,7 @@ void StatusConfig::visit(ConfigFields& fields) {
 
 void StatusMonitor::set_lost(std::string reason) {
   reason_ = std::move(reason);
-  contradicted_ = false;
+  contradicted_ = vision_lost_ = false;
 }
 
 /// How the cameras contradict the IMU, where it is too much to go on; empty else.
@@ -51,6 +55,13 @@ std::string StatusMonitor::contradiction(double imu_strain, double bias_change) 
       bias_change, kPipelineTuning.max_bias_change);
 }
 
+/// Where the velocity stays unknown, as after a gap whose tracks have ended, a new start finds it; empty else.
+std::string StatusMonitor::unknown_motion(double velocity_sigma, Timestamp t) {
+  if (velocity_sigma < kPipelineTuning.unknown_velocity || !velocity_known_) velocity_known_ = t;
+  if (t - *velocity_known_ <= kPipelineTuning.velocity_unknown_after) return "";
+  return fmt::format("velocity known to {:.1f} m/s only", velocity_sigma);
+}
+
 /// Why the estimate is not Good although it goes on; empty if it is.
 std::string StatusMonitor::doubt(const EstimatorResult& result, const Uncertainty& uncertainty) const {
   if (result.provisional) return "the scale of the start is not certain yet";
@@ -61,6 +72,9 @@ std::string StatusMonitor::doubt(const EstimatorResult& result, const Uncertaint
   if (uncertainty.velocity_sigma > config_.max_velocity_sigma)
     return fmt::format("velocity known to {:.2f} m/s, {:.2f} required", uncertainty.velocity_sigma,
                        config_.max_velocity_sigma);
+  if (uncertainty.place_sigma > config_.max_place_sigma)
+    return fmt::format("place known to {:.2f} m since a gap or loss, {:.2f} required", uncertainty.place_sigma,
+                       config_.max_place_sigma);
   if (const double sigma = uncertainty.scale_sigma.value_or(0.0); sigma > config_.max_scale_sigma)
     return fmt::format("motion too gentle for this IMU: scale known to {:.0f} %, {:.0f} % required",
                        100.0 * std::min(sigma, 9.99), 100.0 * config_.max_scale_sigma);
@@ -72,6 +86,7 @@ TrackingStatus StatusMonitor::update(const EstimatorResult& result, const Uncert
   if (!started) {
     last_supported_.reset();
     last_velocity_.reset();
+    velocity_known_.reset();
     return ever_started_ ? TrackingStatus::Lost : TrackingStatus::Initializing;
   }
   ever_started_ = true;
@@ -82,6 +97,7 @@ TrackingStatus StatusMonitor::update(const EstimatorResult& result, const Uncert
       last_velocity_ ? std::min(since_visual_update_s_, to_seconds(t - *last_velocity_)) : since_visual_update_s_;
   reason_ = result.plausible ? contradiction(result.imu_strain, uncertainty.bias_change) : "the solution has diverged";
   contradicted_ = !reason_.empty();
+  if (reason_.empty()) reason_ = unknown_motion(uncertainty.velocity_sigma, t);
   vision_lost_ = reason_.empty() && drifting_s > config_.lost_after_s;
   if (vision_lost_)
     reason_ = fmt::format("no {} landmarks for {:.1f} s", config_.min_landmarks, since_visual_update_s_);

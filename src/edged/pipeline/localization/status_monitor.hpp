@@ -19,6 +19,7 @@ struct Uncertainty {
   double bias_change = 0.0;                ///< of the IMU, see BiasHistory [sigma]
   std::optional<double> scale_sigma = {};  ///< relative, see ScaleUncertainty
   double velocity_sigma = 0.0;             ///< of the worst axis, beyond what the speed allows [m/s]
+  double place_sigma = 0.0;                ///< of the position in the map, by a loss or a gap [m]
 };
 
 /// Determines the tracking status from the estimator's results, packet by packet. Each loss by IMU strain raises its
@@ -47,6 +48,7 @@ class StatusMonitor {
 
  private:
   std::string contradiction(double imu_strain, double bias_change);
+  std::string unknown_motion(double velocity_sigma, Timestamp t);
   std::string doubt(const EstimatorResult& result, const Uncertainty& uncertainty) const;
 
   StatusConfig config_;
@@ -54,6 +56,7 @@ class StatusMonitor {
   double strain_limit_factor_ = 1.0;         ///< on the limits of strain
   std::optional<Timestamp> last_supported_;  ///< by landmarks or standstill, since the start
   std::optional<Timestamp> last_velocity_;   ///< by a sensor, which keeps an estimate without landmarks alive
+  std::optional<Timestamp> velocity_known_;  ///< was it last, by the covariance
   double since_visual_update_s_ = 0.0;
   std::string reason_;
   bool vision_lost_ = false;

@@ -82,6 +82,25 @@ TEST(StatusMonitor, DoubtsAVelocityThatIsNotKnown) {
   EXPECT_THAT(monitor.reason(), testing::HasSubstr("velocity known to 0.50 m/s"));
 }
 
+TEST(StatusMonitor, IsLostWhereTheVelocityStaysUnknownForHalfASecond) {
+  StatusMonitor monitor({});
+  EXPECT_EQ(monitor.update(healthy(), {}, true, at(0.0)), TrackingStatus::Good);
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 2.0}, true, at(0.4)), TrackingStatus::Degraded);
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 1.0}, true, at(0.5)), TrackingStatus::Degraded);
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 2.0}, true, at(1.0)), TrackingStatus::Degraded);
+  EXPECT_EQ(monitor.update(healthy(), {.velocity_sigma = 2.0}, true, at(1.1)), TrackingStatus::Lost);
+  EXPECT_THAT(monitor.reason(), testing::HasSubstr("velocity known to 2.0 m/s"));
+  EXPECT_FALSE(monitor.contradicted());
+  EXPECT_FALSE(monitor.vision_lost()) << "dead reckoning would go on with that velocity";
+}
+
+TEST(StatusMonitor, DoubtsAPlaceThatIsNotKnown) {
+  StatusMonitor monitor({});
+  EXPECT_EQ(monitor.update(healthy(), {.place_sigma = 0.1}, true, at(0.0)), TrackingStatus::Good);
+  EXPECT_EQ(monitor.update(healthy(), {.place_sigma = 0.2}, true, at(0.1)), TrackingStatus::Degraded);
+  EXPECT_THAT(monitor.reason(), testing::HasSubstr("place known to 0.20 m"));
+}
+
 TEST(StatusMonitor, BearsMoreStrainAfterALossByIt) {
   StatusMonitor monitor({});
   EstimatorResult strained = healthy();

@@ -39,11 +39,13 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       loops_(config) {}
 
 void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
+  if (!relocalizing_) gap_s_ = 0.0;
   odom_to_map_.restart(T_new_old, now);
   begin_start(now);
 }
 
-void Mapper::reset_uncertainty(const OdomState& now) {
+void Mapper::reset_uncertainty(const OdomState& now, double gap_s) {
+  gap_s_ = relocalizing_ ? gap_s_ + gap_s : gap_s;
   odom_to_map_.restart(now.t);
   begin_start(now);
 }
@@ -170,9 +172,11 @@ bool Mapper::relocalize(Timestamp t, std::span<const PosedImage> images, bool ma
 /// similar places.
 bool Mapper::plausible(const SE3& T_M_O, const SE3& T_O_B) const {
   const SE3 off = (T_M_O_dead_reckoning_ * T_O_B).inverse() * (T_M_O * T_O_B);
-  return off.translation().norm() < kMapTuning.dead_reckoning_m + kMapTuning.dead_reckoning_mps * dead_reckoning_s_ &&
+  const double seconds = dead_reckoning_s_;
+  return off.translation().norm() <
+             kMapTuning.dead_reckoning_m + kMapTuning.dead_reckoning_mps * seconds + kMapTuning.gap_mps * gap_s_ &&
          so3::log(off.rotation()).norm() <
-             kMapTuning.max_turn_rad + kMapTuning.dead_reckoning_radps * dead_reckoning_s_;
+             kMapTuning.max_turn_rad + kMapTuning.dead_reckoning_radps * seconds + kMapTuning.gap_radps * gap_s_;
 }
 
 /// T_M_O by place recognition, from keyframes of that time.

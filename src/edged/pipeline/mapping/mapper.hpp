@@ -33,8 +33,9 @@ class Mapper {
 
   /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
   void restart(const SE3& T_new_old, const OdomState& now);
-  /// O continues, but the rotation until now is unknown: its pose in M is uncertain, as after a start.
-  void reset_uncertainty(const OdomState& now);
+  /// O continues, but the motion until now is not known well: its pose in M is uncertain, as after a start. gap_s: for
+  /// so long there was no measurement.
+  void reset_uncertainty(const OdomState& now, double gap_s = 0.0);
   /// A new epoch of stamps begins: the map is discarded, unless it never changes, and the body continues from its pose.
   void begin_epoch();
   /// The odometry has reached `now`; at_rest: it is known to stand still.
@@ -106,6 +107,7 @@ class Mapper {
   Timestamp started_;              ///< the estimator's newest start
   SE3 T_M_O_dead_reckoning_;       ///< at the newest start, by dead reckoning
   double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes
+  double gap_s_ = 0.0;             ///< the part of it without any sensor
   bool relocalizing_ = false;      ///< since the newest start nothing older has been matched
   /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
   std::optional<Timestamp> loaded_map_until_;

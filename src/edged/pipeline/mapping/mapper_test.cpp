@@ -356,6 +356,18 @@ TEST_F(MapperBeforeAWall, GoesOnFromWhereTheBodyIsInANewTime) {
   EXPECT_EQ(mapper.odom_to_map().T_M_O().translation(), T_M_O.translation());
 }
 
+TEST_F(MapperBeforeAWall, RelocalizesFartherOffAfterAGapOfAllSensors) {
+  for (const auto& [gap_s, relocalized] : {std::pair(0.0, false), {1.5, true}}) {
+    Mapper mapper{MapConfig{}, kLostAfter_s};
+    mapper.restart(SE3(), now(0.0, SE3()));
+    add_keyframe(mapper, 5.0, SE3());
+    const SE3 off(so3::exp({0, 0, 0.5}), {0.0, 3.0, 0.0});
+    mapper.reset_uncertainty(now(6.0, off), gap_s);
+    EXPECT_FALSE(localize(mapper, 6.1, off, SE3()));
+    EXPECT_EQ(localize(mapper, 6.4, off, SE3()), relocalized) << gap_s;
+  }
+}
+
 TEST_F(MapperBeforeAWall, RelocalizesAsFarOffAsDeadReckoningCanBeByTheTimeAfterWhichALossIsReported) {
   for (const auto& [lost_after_s, relocalized] : {std::pair(2.5, false), {6.0, true}}) {
     Mapper mapper{MapConfig{}, lost_after_s};

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "edged/pipeline/localization/place_uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+namespace edged {
+namespace {
+
+constexpr double kEnough_m = 0.15;
+
+/// Two samples so many seconds apart.
+Preintegration motion(double length_s, bool gap) {
+  const std::vector<ImuSample> imu = {{timestamp_from_seconds(0.0), {0, 0, 0}, {0, 0, 9.81}, gap},
+                                      {timestamp_from_seconds(length_s), {0, 0, 0}, {0, 0, 9.81}, gap}};
+  return {imu, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}};
+}
+
+TEST(PlaceUncertainty, IgnoresDriftWithoutAGap) {
+  PlaceUncertainty place;
+  for (const double sigma : {0.01, 0.2, 0.5}) place.update(sigma, kEnough_m);
+  EXPECT_EQ(place.sigma(), 0.0);
+}
+
+TEST(PlaceUncertainty, HoldsWhatAGapAddsUntilTheCamerasOrTheMapTell) {
+  PlaceUncertainty place;
+  place.update(0.1, kEnough_m);
+  place.end_gap();
+  place.update(0.6, kEnough_m);
+  EXPECT_NEAR(place.sigma(), 0.5, 1e-12);
+  PlaceUncertainty relocalized = place;
+  relocalized.relocalize();
+  EXPECT_EQ(relocalized.sigma(), 0.0);
+  place.update(0.12, kEnough_m);
+  EXPECT_EQ(place.sigma(), 0.0);
+  place.update(0.6, kEnough_m);
+  EXPECT_EQ(place.sigma(), 0.0) << "later drift is none of it";
+}
+
+TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized) {
+  PlaceUncertainty place;
+  place.update(0.03, kEnough_m);
+  place.end_estimate(0.2);
+  EXPECT_NEAR(place.sigma(), 0.03, 1e-12);
+  place.dead_reckon(motion(0.02, false));
+  EXPECT_NEAR(place.sigma(), 0.034, 1e-3);
+  place.dead_reckon(motion(2.0, true));
+  EXPECT_GT(place.sigma(), 2.5) << "2.2 sqrt(2^3 / 3) of the gap";
+  const double sigma = place.sigma();
+  place.update(0.01, kEnough_m);
+  EXPECT_EQ(place.sigma(), sigma);
+  place.relocalize();
+  EXPECT_EQ(place.sigma(), 0.0);
+}
+
+}  // namespace
+}  // namespace edged
