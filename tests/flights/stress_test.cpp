@@ -107,7 +107,7 @@ TEST(Stress, AThirdOfASecondWithoutImuIsSurvived) {
   for (const Mode mode : kAllModes) EXPECT_EQ(withstand(flight, mode).statistics.times_lost(), 0U);
 }
 
-/// Tracks that survive bridge half a second; after two the body is found again in the map.
+/// Tracks that survive bridge half a second; after two the body is relocalized.
 TEST(Stress, ASilenceOfAllSensorsIsSurvived) {
   for (const double length_s : {0.5, 2.0}) {
     SCOPED_TRACE(length_s);

@@ -32,10 +32,6 @@ ImuSample sample_at(std::span<const ImuSample> samples, Timestamp t) {
   return after->t == t ? *after : interpolate_samples(*(after - 1), *after, t);
 }
 
-bool out_of_range(const Vector3d& a, const Vector3d& b, double limit) {
-  return a.cwiseAbs().maxCoeff() >= limit || b.cwiseAbs().maxCoeff() >= limit;
-}
-
 /// Between two samples far apart the signal does not follow the integrated straight line: the vibration after a knock
 /// is faster than the sample rate. Standard deviation of the mean over the step; 0 for the jumps of a body in flight.
 double sigma_of_jump(const Vector3d& a, const Vector3d& b, double usual) {
@@ -82,6 +78,14 @@ Matrix9d next_covariance(const Matrix9d& covariance, const StepJacobians& step, 
 
 bool in_gap(const ImuSample& a, const ImuSample& b) {
   return a.interpolated || b.interpolated || b.t - a.t > kMaxSampleInterval;
+}
+
+bool gyro_saturated(const ImuSample& sample, const ImuNoise& noise) {
+  return sample.gyro_clipped || sample.gyro_B.cwiseAbs().maxCoeff() >= noise.gyro_saturation;
+}
+
+bool accel_saturated(const ImuSample& sample, const ImuNoise& noise) {
+  return sample.accel_clipped || sample.accel_B.cwiseAbs().maxCoeff() >= noise.accel_saturation;
 }
 
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1) {
@@ -144,10 +148,8 @@ void Preintegration::integrate_step(const ImuSample& a, const ImuSample& b) {
   d_dR_d_bg_ = step.turn_back * d_dR_d_bg_ - step.d_phi_d_gyro;
 
   const bool gap = in_gap(a, b);
-  const bool gyro_clipped =
-      a.gyro_clipped || b.gyro_clipped || out_of_range(a.gyro_B, b.gyro_B, noise_.gyro_saturation);
-  const bool accel_clipped =
-      a.accel_clipped || b.accel_clipped || out_of_range(a.accel_B, b.accel_B, noise_.accel_saturation);
+  const bool gyro_clipped = gyro_saturated(a, noise_) || gyro_saturated(b, noise_);
+  const bool accel_clipped = accel_saturated(a, noise_) || accel_saturated(b, noise_);
   const double inflation = noise_.saturation_inflation;
   const double gyro_sigma = density(noise_.gyro_noise, gap, kImuTuning.gap_gyro_noise, gyro_clipped, inflation);
   const double accel_sigma = density(noise_.accel_noise, gap, kImuTuning.gap_accel_noise, accel_clipped, inflation);

@@ -24,6 +24,10 @@ inline constexpr Duration kMaxSampleInterval = std::chrono::milliseconds(30);
 /// Whether the step between two samples lies in a gap of the recording, wholly or in part.
 bool in_gap(const ImuSample& a, const ImuSample& b);
 
+/// Whether a reading is at or beyond the sensor's range: by the calibration, or by the gate (ImuSample).
+bool gyro_saturated(const ImuSample& sample, const ImuNoise& noise);
+bool accel_saturated(const ImuSample& sample, const ImuNoise& noise);
+
 /// Samples from t_0 to t_1 inclusive, both ends interpolated linearly from their neighbours, and marked as interpolated
 /// if that is across a gap. `samples` are in time order and must cover [t_0, t_1] (CheckError otherwise).
 std::vector<ImuSample> slice_imu(std::span<const ImuSample> samples, Timestamp t_0, Timestamp t_1);

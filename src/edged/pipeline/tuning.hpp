@@ -15,9 +15,9 @@ struct PipelineTuning {
   // Stamps (decisions 007, 008): working sensors have no such jumps and gaps.
   Duration clock_jump = std::chrono::seconds(1);  ///< a stamp so far behind others of its sensor is of another clock
   Duration clock_confirmation =
-      std::chrono::milliseconds(500);                 ///< span of such stamps after which the clock counts as set back
-  Duration recording_gap = std::chrono::seconds(1);   ///< between the clocks of sensors that work
-  Duration silence = std::chrono::milliseconds(200);  ///< of all sensors: no packets are cut by time inside
+      std::chrono::milliseconds(500);                ///< span of such stamps after which the clock counts as set back
+  Duration recording_gap = std::chrono::seconds(1);  ///< between the clocks of sensors that work
+  double max_gap_s = 0.2;  ///< of all sensors: no packets are cut by time inside, and the map is searched anew
   Duration imu_history = std::chrono::seconds(20);    ///< IMU samples kept before the first packet or estimate
   Duration max_prediction = std::chrono::seconds(1);  ///< limit of newest_state: dead reckoning soon drifts by metres
   // Packets (decision 010).
@@ -63,7 +63,6 @@ struct PipelineTuning {
   double velocity_share = 0.1;    ///< of the speed: so uncertain may the velocity be as well
   double unknown_velocity = 1.5;  ///< [m/s] sigma; for so long: Lost
   Duration velocity_unknown_after = std::chrono::milliseconds(500);  ///< cameras need up to 0.3 s after a gap
-  double max_gap_s = 0.2;      ///< of all sensors; after it the place in the map is searched anew
   double longest_gap_s = 1.0;  ///< beyond it Lost: a hand or a drone may have turned by more than the view
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "edged/estimator/tuning.hpp"
+#include "edged/imu/preintegration.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
@@ -29,7 +30,7 @@ void AttitudeFilter::propagate(const ImuSample& from, const ImuSample& to) {
   F.topLeftCorner<3, 3>() = turn.toRotationMatrix().transpose();
   F.topRightCorner<3, 3>() = -dt * Eigen::Matrix3d::Identity();
   P_ = F * P_ * F.transpose();
-  const bool clipped = to.interpolated || to.gyro_clipped || to.gyro_B.cwiseAbs().maxCoeff() >= noise_.gyro_saturation;
+  const bool clipped = to.interpolated || gyro_saturated(to, noise_);
   const double noise = noise_.gyro_noise * (clipped ? noise_.saturation_inflation : 1.0);
   P_.topLeftCorner<3, 3>().diagonal().array() += noise * noise * dt;
   P_.bottomRightCorner<3, 3>().diagonal().array() += noise_.gyro_walk * noise_.gyro_walk * dt;

@@ -76,7 +76,7 @@ void Packetizer::add(Measurement measurement) {
 }
 
 void Packetizer::advance_clock(Timestamp recorded, Timestamp complete) {
-  if (last_recorded_ && recorded - *last_recorded_ > kPipelineTuning.silence)
+  if (last_recorded_ && to_seconds(recorded - *last_recorded_) > kPipelineTuning.max_gap_s)
     heartbeat_from_ = recorded + event_offset_;
   if (!last_recorded_ || recorded > *last_recorded_) last_recorded_ = recorded;
   complete_ = std::max(complete_, complete);

@@ -47,7 +47,7 @@ std::vector<ImuSample> ImuPropagator::bridged(const std::vector<ImuSample>& imu)
 
 Preintegration ImuPropagator::predict(std::vector<ImuSample> imu, bool started) {
   const ImuNoise& noise = noise_.add(imu);
-  if (started) imu = bridged(imu);
+  if (started && std::ranges::adjacent_find(imu, in_gap) != imu.end()) imu = bridged(imu);
   Preintegration motion(imu, now_.bias_gyro, now_.bias_accel, noise);
   const Timestamp t = motion.end();
   gyro_was_saturated_ = gyro_saturated_ && !motion.gyro_clipped();

@@ -85,9 +85,10 @@ Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
 LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen,
                                          std::vector<ExternalSample> external) {
   const Timestamp t = motion.end();
-  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.max_gap_s) map_window();
-  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.longest_gap_s)
-    return end_at_gap(motion, seen);
+  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.max_gap_s) {
+    map_window();
+    if (body_.gap_s() > kPipelineTuning.longest_gap_s) return end_at_gap(motion, seen);
+  }
   LocalizationOutput output;
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
@@ -133,7 +134,7 @@ LocalizationOutput Localization::end_at_gap(const Preintegration& gap, const Vis
   output.correction.ended = true;
   place_.end_estimate(velocity_sigma_in_place());
   place_.dead_reckon(gap);
-  session_ = new_session(session_.biases.newest(), external_counters(), t);
+  session_ = new_session(prior_after_loss(), external_counters(), t);
   return output;
 }
 

@@ -26,7 +26,8 @@ void StatusConfig::visit(ConfigFields& fields) {
               "The status is Degraded while the velocity is less certain than this and a tenth of the speed."});
   fields.add("max_place_sigma", max_place_sigma,
              {"m", 0.01, 1000,
-              "The status is Degraded while a gap of all sensors or a loss leaves the position in the map less certain "
+              "The status is Degraded while a gap of all sensors or an unknown velocity leaves the position in the map "
+              "less certain "
               "than this, until the body is relocalized."});
   fields.add("max_scale_sigma", max_scale_sigma,
              {"", 0.01, 10,

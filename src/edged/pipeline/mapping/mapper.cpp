@@ -39,18 +39,16 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       loops_(config) {}
 
 void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
-  if (!relocalizing_) gap_s_ = 0.0;
   odom_to_map_.restart(T_new_old, now);
   begin_start(now);
 }
 
 void Mapper::reset_uncertainty(const OdomState& now, double gap_s) {
-  gap_s_ = relocalizing_ ? gap_s_ + gap_s : gap_s;
   odom_to_map_.restart(now.t);
-  begin_start(now);
+  begin_start(now, gap_s);
 }
 
-void Mapper::begin_start(const OdomState& now) {
+void Mapper::begin_start(const OdomState& now, double gap_s) {
   const bool first = map_.keyframes().empty() || !localized_period().contains(map_.keyframes().back().t);
   const double position_sigma = first ? 0.0 : kMapTuning.same_place_m,
                yaw_sigma = first ? 0.0 : kMapTuning.same_place_rad;
@@ -61,6 +59,7 @@ void Mapper::begin_start(const OdomState& now) {
   started_ = now.t;
   dead_reckoning_s_ =
       first ? 0.0 : (relocalizing_ ? dead_reckoning_s_ : lost_after_s_) + to_seconds(now.t - predicted_);
+  gap_s_ = (relocalizing_ ? gap_s_ : 0.0) + gap_s;
   relocalizing_ = !first;
   relocalization_candidates_.clear();
   loops_.reset();

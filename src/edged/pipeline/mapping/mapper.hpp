@@ -79,7 +79,7 @@ class Mapper {
   /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
   /// it.
   TimeInterval localized_period() const { return {.since = loaded_map_until_.value_or(Timestamp::min())}; }
-  void begin_start(const OdomState& now);
+  void begin_start(const OdomState& now, double gap_s = 0.0);
   bool update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
               std::span<const PosedImage> images);
   std::optional<SE3> recognized_T_M_O(const PosedImage& posed, TimeInterval created) const;
