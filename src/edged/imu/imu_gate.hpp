@@ -73,25 +73,25 @@ class ImuGate {
   std::vector<ImuSample> passed_;           // by this call
   std::optional<ImuSample> newest_, last_;  // received, passed
   // Bursts: samples with one stamp.
-  bool bursts_ = false;
   std::vector<ImuSample> burst_;
   Timestamp burst_before_;
   Duration spacing_{0};  // of the samples of the last one
   // Repetition.
+  std::array<std::size_t, 6> repeats_{};      // of the newest reading of each axis
+  std::array<Timestamp, 6> repeats_since_{};  // the first of the equal ones
+  std::vector<ImuSample> held_;
+  std::size_t neighbours_ = 0;                  // in this window
   Reading seen_ = Reading::Zero();              // the reading before
-  std::array<std::size_t, 6> repeats_{};        // of the newest reading of each axis
-  std::array<Timestamp, 6> repeats_since_{};    // the first of the equal ones
   Reading quantum_ = Reading::Constant(1e300);  // smallest change so far: the resolution
   Reading step_ = Reading::Zero();              // largest change of late, halved with each
-  std::vector<ImuSample> held_;
   // Learnt from samples that passed.
   Reading equal_ = Reading::Zero(), weight_ = Reading::Zero();  // equal neighbours in this window; - ln of their share
-  std::size_t neighbours_ = 0;                                  // in this window
   Reading largest_ = Reading::Zero();                           // magnitudes
   // Spikes of the gyro.
   std::optional<ImuSample> jump_;
   double usual_jump_ = 0.0;  // [rad/s]
   bool learnt_ = false;      // a whole window
+  bool bursts_ = false;      // samples come with one stamp
 };
 
 }  // namespace edged

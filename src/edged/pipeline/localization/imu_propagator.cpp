@@ -29,7 +29,8 @@ std::vector<ImuSample> ImuPropagator::bridged(const std::vector<ImuSample>& imu)
   for (const ImuSample& b : imu) {
     if (!samples.empty() && in_gap(samples.back(), b)) {
       const ImuSample a = samples.back();
-      const Eigen::Vector3d from = rate, to = b.interpolated ? rate : Eigen::Vector3d(b.gyro_B - now_.bias_gyro);
+      const Eigen::Vector3d from = a.gyro_B - now_.bias_gyro;
+      const Eigen::Vector3d to = b.interpolated ? from : Eigen::Vector3d(b.gyro_B - now_.bias_gyro);
       const Timestamp begin = a.interpolated ? a.t : a.t + kNext, end = b.interpolated ? b.t : b.t - kNext;
       const auto steps = std::clamp<Duration::rep>((end - begin) / kMaxSampleInterval, 1, 100);
       for (Duration::rep k = a.interpolated ? 1 : 0; k <= steps; ++k)
