@@ -107,6 +107,24 @@ TEST(Stress, AThirdOfASecondWithoutImuIsSurvived) {
   for (const Mode mode : kAllModes) EXPECT_EQ(withstand(flight, mode).statistics.times_lost(), 0U);
 }
 
+/// Without a gyro frames tell the motion, event frames do not.
+TEST(Stress, TwoSecondsWithoutImuAreBridgedByTheFramesAndEndEventsAlone) {
+  Flight flight = flight_of("poster", 13.0);
+  std::erase_if(flight.measurements, [](const Measurement& measurement) {
+    const auto* sample = std::get_if<ImuSample>(&measurement);
+    return sample != nullptr && to_seconds(sample->t) > 8.0 && to_seconds(sample->t) < 10.0;
+  });
+  for (const Mode mode : {Mode::Fused, Mode::Frames}) {
+    const FlightRun run = withstand(flight, mode);
+    EXPECT_EQ(run.statistics.times_lost(), 0U);
+    EXPECT_LT(score(flight, run).evaluation.mpe_percent, 1.0);
+  }
+  const FlightRun events = run_flight(flight.calibration, flight.measurements, Mode::Events);
+  EXPECT_TRUE(std::ranges::all_of(events.steps, [](const Step& step) {
+    return to_seconds(step.t) < 9.1 || to_seconds(step.t) > 10.0 || step.status == TrackingStatus::Lost;
+  }));
+}
+
 /// Tracks that survive bridge half a second; after two the body is relocalized.
 TEST(Stress, ASilenceOfAllSensorsIsSurvived) {
   for (const double length_s : {0.5, 2.0}) {

@@ -63,7 +63,7 @@ struct PipelineTuning {
   double velocity_share = 0.1;    ///< of the speed: so uncertain may the velocity be as well
   double unknown_velocity = 1.5;  ///< [m/s] sigma; for so long: Lost
   Duration velocity_unknown_after = std::chrono::milliseconds(500);  ///< cameras need up to 0.3 s after a gap
-  double longest_gap_s = 1.0;  ///< beyond it Lost: a hand or a drone may have turned by more than the view
+  double longest_gap_s = 1.0;  ///< of frames and IMU; beyond it Lost: a hand or a drone may have turned by the view
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

@@ -24,16 +24,31 @@ std::size_t events_in(const Packet& packet) {
 void PacketCompletion::add(Packet packet, PacketizerCounters& counters) {
   waiting_events_ += events_in(packet);
   waiting_.push_back(std::move(packet));
-  while (waiting_.size() > 1 &&
-         (waiting_events_ > max_events_ || waiting_.size() > kPipelineTuning.max_waiting_packets)) {
+  const auto overflow = [&](const std::deque<Packet>::iterator& oldest) {
     ++counters.packets_overflow;
-    drop(waiting_.begin(), counters);
+    drop(oldest, counters);
+  };
+  if (waiting_.size() > kPipelineTuning.max_waiting_packets) overflow(waiting_.begin());
+  // Frames tell the motion in a gap of the IMU; event frames need a gyro.
+  for (std::size_t i = 0; waiting_events_ > max_events_ && i + 1 < waiting_.size();) {
+    if (waiting_[i].frames.empty())
+      overflow(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      drop_events(waiting_[i++], counters);
+  }
+}
+
+void PacketCompletion::drop_events(Packet& packet, PacketizerCounters& counters) {
+  waiting_events_ -= events_in(packet);
+  for (PacketEvents& events : packet.events) {
+    counters.events_lost += events.new_events;
+    events.events.clear();
+    events.new_events = events.window_events = 0;
   }
 }
 
 void PacketCompletion::drop(const std::deque<Packet>::iterator& packet, PacketizerCounters& counters) {
-  for (const PacketEvents& events : packet->events) counters.events_lost += events.new_events;
-  waiting_events_ -= events_in(*packet);
+  drop_events(*packet, counters);
   waiting_.erase(packet);
 }
 

@@ -17,7 +17,8 @@ namespace edged {
 /// Memory is bounded; all that is dropped is counted.
 class PacketCompletion {
  public:
-  /// max_events: in packets that wait. The oldest packets beyond it are dropped. IMU counts continue from so_far.
+  /// max_events: in packets that wait. Beyond it the oldest packets lose their events, those without a frame
+  /// are dropped. IMU counts continue from so_far.
   PacketCompletion(int max_events, const ImuFaultCounts& so_far)
       : max_events_(static_cast<std::size_t>(max_events)), gate_(so_far) {}
 
@@ -33,6 +34,7 @@ class PacketCompletion {
 
  private:
   std::vector<ExternalSample> take_external(Timestamp from, Timestamp to, PacketizerCounters& counters);
+  void drop_events(Packet& packet, PacketizerCounters& counters);
   void drop(const std::deque<Packet>::iterator& packet, PacketizerCounters& counters);
 
   std::size_t max_events_;

@@ -138,6 +138,21 @@ TEST(Packetizer, KeepsItsMemoryBoundedWhenTheImuStaysAway) {
   EXPECT_LE(to_ms(result.packets.front().imu.front().t), 0.0);  // the motion since the last packet is still covered
 }
 
+TEST(Packetizer, KeepsTheFramesOfAGapOfTheImu) {
+  PacketizerConfig config;
+  config.max_waiting_events = 1000;
+  const TestStream stream = TestStream().imu(-10, 0, 1).imu(5000, 5010, 1).events(0, 5000, 1).frames(20, 5000, 40);
+  const PacketizerResult result = packetize(stream, Mode::Fused, make_rig(), config);
+  std::size_t frames = 0, kept = 0;
+  for (const Packet& packet : result.packets) {
+    frames += packet.frames.size();
+    kept += packet.events[0].events.size();
+  }
+  EXPECT_EQ(frames, 125U);
+  EXPECT_LE(kept, 1100U);
+  EXPECT_EQ(sum_of_new_events(result) + result.counters.events_lost, 5001U);
+}
+
 Measurement height_at_ms(double ms) { return ExternalSample(HeightSample{ms_stamp(ms), ms, 0.1}); }
 
 TestStream with_heights(TestStream stream, double from, double to, double step) {

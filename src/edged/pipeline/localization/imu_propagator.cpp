@@ -56,7 +56,8 @@ Preintegration ImuPropagator::predict(std::vector<ImuSample> imu, bool started) 
   started_ = started;
   predicted_s_ = started && motion.gyro_trusted() ? motion.dt() : 0.0;
   gap_s_ = started ? motion.gap_s() : 0.0;
-  in_gap_ = started && imu.back().interpolated;
+  const auto last = std::ranges::find(imu.rbegin(), imu.rend(), false, &ImuSample::interpolated);
+  silent_s_ = last == imu.rbegin() ? 0.0 : last == imu.rend() ? silent_s_ + motion.dt() : to_seconds(t - last->t);
   std::erase_if(T_O_B_, [&](const StampedPose& pose) { return pose.t < t - history_ || pose.t >= imu.front().t; });
   if (started) {
     for (const OdomState& state : propagate_all(now_, imu)) T_O_B_.push_back({state.t, state.T_O_B});
@@ -84,7 +85,7 @@ SE3 ImuPropagator::extrapolate(Duration time) const {
 
 SE3 ImuPropagator::correct(const OdomState& estimate, bool new_frame, bool standstill) {
   SE3 correction = estimate.T_O_B * now_.T_O_B.inverse();
-  if (in_gap_ && !new_frame)  // only the cameras measure the rate
+  if (gap_s_ > 0.0 && silent_s_ > 0.0 && !new_frame)  // only the cameras measure the rate
     omega_B_ += so3::log(now_.T_O_B.rotation().conjugate() * estimate.T_O_B.rotation()) / gap_s_;
   if (!new_frame && !standstill && predicted_s_ > 0.0)
     noise_.add_correction(now_.t, estimate.v_O - now_.v_O, predicted_s_);

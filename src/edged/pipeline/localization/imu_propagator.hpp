@@ -36,6 +36,8 @@ class ImuPropagator {
   bool gyro_was_saturated() const { return gyro_was_saturated_; }
   /// Duration without samples in the last prediction [s].
   double gap_s() const { return gap_s_; }
+  /// Duration without samples until now [s].
+  double silent_s() const { return silent_s_; }
   /// T_O_B a few milliseconds after now, at the present rate and velocity.
   SE3 extrapolate(Duration time) const;
   /// Body poses at the IMU samples of the history, oldest first.
@@ -51,7 +53,7 @@ class ImuPropagator {
   bool gyro_saturated_ = false, gyro_was_saturated_ = false;  ///< in the last prediction; in the one before alone
   double predicted_s_ = 0.0;                           ///< duration of the last prediction by trusted samples, else 0
   double gap_s_ = 0.0;                                 ///< without samples in the last prediction
-  bool in_gap_ = false;                                ///< at its end
+  double silent_s_ = 0.0;                              ///< at its end
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();  ///< [rad/s], now
   std::vector<StampedPose> T_O_B_;
 };

@@ -80,6 +80,7 @@ TEST(ImuPropagator, GoesOnAsItDoesInAGapOfTheImu) {
   body.predict(gap(0.15, 0.2), true);
   EXPECT_NEAR(so3::log(body.now().T_O_B.rotation()).z(), 0.05 * kTurnRate, 1e-9);
   EXPECT_NEAR(body.now().v_O.x(), 2.0, 1e-9);
+  EXPECT_NEAR(body.silent_s(), 0.1, 1e-9);
 }
 
 /// The specific force of gravity turns with the body; between the ends of the gap it is no straight line.

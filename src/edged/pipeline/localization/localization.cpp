@@ -89,6 +89,8 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
     map_window();
     if (body_.gap_s() > kPipelineTuning.longest_gap_s) return end_at_gap(motion, seen);
   }
+  if (session_.estimator.initialized() && body_.silent_s() > kPipelineTuning.longest_gap_s && !seen_by_frames(seen))
+    return end_at_gap(motion, seen);
   LocalizationOutput output;
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
@@ -122,18 +124,29 @@ void Localization::map_window() {
   for (const MarginalizedKeyframe& record : keyframe_records(session_.estimator.window())) mapper_.add_keyframe(record);
 }
 
-/// Nothing is estimated across a gap whose end shows another view.
-LocalizationOutput Localization::end_at_gap(const Preintegration& gap, const VisionOutput& seen) {
-  const Timestamp t = gap.end();
+/// Without a gyro frames tell the motion, event frames do not: their events are compensated by it.
+bool Localization::seen_by_frames(const VisionOutput& seen) const {
+  std::size_t features = 0;
+  for (const CameraObservations& view : seen.observations) {
+    const std::optional<std::size_t> camera = calibration_.find(view.camera);
+    if (camera && calibration_.cameras()[*camera].modality == Modality::Frames) features += view.features.size();
+  }
+  return features >= static_cast<std::size_t>(config_.status.min_landmarks);
+}
+
+/// Nothing is estimated across a gap whose end shows another view, or that only event frames show.
+LocalizationOutput Localization::end_at_gap(const Preintegration& motion, const VisionOutput& seen) {
+  const Timestamp t = motion.end();
+  const double gap_s = std::max(body_.gap_s(), body_.silent_s());
   LocalizationOutput output;
-  status_.set_lost(fmt::format("no sensor for {:.1f} s", gap.gap_s()));
-  mapper_.reset_uncertainty(body_.now(), gap.gap_s());
+  status_.set_lost(fmt::format("no IMU for {:.1f} s, nor frames", gap_s));
+  mapper_.reset_uncertainty(body_.now(), gap_s);
   output.step = describe(t, TrackingStatus::Lost, {});
   for (const CameraObservations& view : seen.observations)
     for (const FeatureObservation& feature : view.features) output.correction.outliers.push_back(feature.id);
   output.correction.ended = true;
   place_.end_estimate(velocity_sigma_in_place());
-  place_.dead_reckon(gap);
+  place_.dead_reckon(motion);
   session_ = new_session(prior_after_loss(), external_counters(), t);
   return output;
 }

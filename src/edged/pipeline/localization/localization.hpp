@@ -84,7 +84,8 @@ class Localization {
   void update_covariance(Timestamp t);
   double velocity_sigma_in_place() const;
   void map_window();
-  LocalizationOutput end_at_gap(const Preintegration& gap, const VisionOutput& seen);
+  bool seen_by_frames(const VisionOutput& seen) const;
+  LocalizationOutput end_at_gap(const Preintegration& motion, const VisionOutput& seen);
   Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
 
   OdometryConfig config_;

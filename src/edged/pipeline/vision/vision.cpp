@@ -126,6 +126,9 @@ double Vision::measure_depth(const Packet& packet) {
 
 std::vector<EventImage> Vision::render(const VisionInput& input, double scene_depth) {
   std::vector<EventImage> images(event_views_.size());
+  // The motion of an event frame's events is compensated by the gyro: in a gap, features on it would measure what was
+  // assumed, and frames are better without them.
+  if (input.body.gap_s() > 0.0 && frames_sufficient(input.body.now().t)) return images;
   for (std::size_t i = 0; i < images.size(); ++i) {
     const auto timer = timings_->measure("event_frame");
     EventView& view = event_views_[i];
