@@ -128,6 +128,7 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
     RunWriter writer(folder, "body", {});
     Step step;
     for (int i = 0; i < 20; ++i) {
+      step.relocalized = i == 12;
       step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
       step.state.T_W_B = SE3(so3::exp({0.1 * i, 0.3, -0.2 * i}), Eigen::Vector3d(i / 3.0, 1e-7 * i, -7.0));
       step.t = timestamp_from_seconds(1e9 + i / 7.0);
@@ -187,6 +188,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
     RunWriter writer(folder, "body", {});
     Step step;
     for (int i = 0; i < 20; ++i) {
+      step.relocalized = i == 12;
       step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
       step.covariance.reset();
       Eigen::Matrix3d P;
@@ -202,7 +204,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
   ASSERT_EQ(read.size(), 14u);
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read[i].t, samples.all()[i].t);
-    EXPECT_EQ(read[i].start, samples.all()[i].start);
+    EXPECT_EQ(read[i].reference, samples.all()[i].reference);
     EXPECT_EQ(read[i].covariance.position, samples.all()[i].covariance.position);
     EXPECT_EQ(read[i].covariance.rotation, samples.all()[i].covariance.rotation);
     EXPECT_EQ(read[i].covariance.velocity, samples.all()[i].covariance.velocity);

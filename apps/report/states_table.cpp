@@ -219,14 +219,13 @@ std::vector<StateCovarianceSample> covariance_samples_of(const StatesTable& stat
 
 void CovarianceSamples::add(const Step& step) {
   const bool good = step.status == TrackingStatus::Good;
-  // Packets after the first of a loss only skip a number.
-  if (step.status == TrackingStatus::Lost || step.relocalized) ++start_;
+  if (step.relocalized) ++reference_;
   if (!step.covariance || !is_tracking(step.status)) return;
   const auto old = [&](const StateCovarianceSample& last) {
-    return last.start == start_ && last.good && last.covariance.position == step.covariance->position;
+    return last.reference == reference_ && last.good && last.covariance.position == step.covariance->position;
   };
   if (good && !samples_.empty() && old(samples_.back())) return;
-  samples_.push_back({step.t, step.state.T_W_B, step.state.v_W, *step.covariance, good, start_});
+  samples_.push_back({step.t, step.state.T_W_B, step.state.v_W, *step.covariance, good, reference_});
 }
 
 std::string pace_heading() { return "t_ns,processing_ms,latency_ms\n"; }

@@ -44,8 +44,8 @@ Trajectory body_poses(const StatesTable& states, std::vector<std::size_t>* rows 
 /// The poses whose covariance was computed at their step.
 std::vector<StateCovarianceSample> covariance_samples_of(const StatesTable& states);
 
-/// Collects the poses whose covariance was computed at their step, and all Degraded ones that have one; a loss ends a
-/// start, and so does relocalization.
+/// Collects the poses whose covariance was computed at their step, and all Degraded ones that have one; relocalization
+/// begins a new reference.
 class CovarianceSamples {
  public:
   /// Every step, in time order.
@@ -54,7 +54,7 @@ class CovarianceSamples {
 
  private:
   std::vector<StateCovarianceSample> samples_;
-  int start_ = 0;
+  int reference_ = 0;
 };
 
 /// The first line of pace.csv, and the line of a step.

@@ -32,10 +32,10 @@ TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
   const std::vector<double> stamps{2, 4, 6, 7, 8};
   for (std::size_t i = 0; i < stamps.size(); ++i) EXPECT_EQ(claims[i].t, timestamp_from_seconds(stamps[i]));
   EXPECT_FALSE(claims[3].good);
-  EXPECT_EQ(claims[0].start, claims[1].start);
-  EXPECT_NE(claims[1].start, claims[2].start);
-  EXPECT_EQ(claims[2].start, claims[3].start);
-  EXPECT_NE(claims[3].start, claims[4].start) << "the pose has jumped";
+  EXPECT_EQ(claims[0].reference, claims[1].reference);
+  EXPECT_EQ(claims[1].reference, claims[2].reference) << "after a loss the covariance contains it";
+  EXPECT_EQ(claims[2].reference, claims[3].reference);
+  EXPECT_NE(claims[3].reference, claims[4].reference) << "the pose has jumped";
 }
 
 }  // namespace

@@ -30,8 +30,9 @@ struct NavState {
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// Covariance of a state relative to the start of the estimator (a loss begins a new one), where position and yaw are
-/// exact by definition. The parts are the diagonal blocks of the joint covariance.
+/// Covariance of a state relative to the first start of the estimator, where position and yaw are exact by definition.
+/// After a loss it contains what the motion until the next start leaves uncertain; after relocalization it is relative
+/// to the map at that place. The parts are the diagonal blocks of the joint covariance.
 struct StateCovariance {
   Eigen::Matrix3d position;  ///< [m^2], in W
   Eigen::Matrix3d rotation;  ///< [rad^2], in B: of phi in R_true = R Exp(phi)

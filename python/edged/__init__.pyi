@@ -135,7 +135,7 @@ class Step(_BodyState):
         """One POSE: of "body" or a camera, on its own clock, by the calibration estimated by then."""
     @property
     def position_covariance(self) -> NDArray[np.float64] | None:
-        """In W [m^2], relative to the start."""
+        """In W [m^2], relative to the first start."""
     @property
     def rotation_covariance(self) -> NDArray[np.float64] | None:
         """In B [rad^2], of phi in R_true = R Exp(phi)."""

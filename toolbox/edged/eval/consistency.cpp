@@ -232,19 +232,19 @@ Consistency check_consistency(const Trajectory& truth, const std::vector<StateCo
   ConsistencySums errors(truth);
   Spans silent;
   std::optional<Anchor> anchor;
-  int start = 0;
+  int reference = 0;
   auto sample = samples.begin();
   for (const PosePair& pair : associate(truth, estimate).pairs) {
     while (sample->t < pair.t) ++sample;  // where the truth is sparser, the first one after its stamp
-    if (sample->t != pair.t && sample->start != std::prev(sample)->start) continue;
-    if (anchor && sample->start != start) anchor.reset(), silent.end();
+    if (sample->t != pair.t && sample->reference != std::prev(sample)->reference) continue;
+    if (anchor && sample->reference != reference) anchor.reset(), silent.end();
     if (!anchor) {
       if (!sample->good) continue;
       anchor.emplace(pair, *sample);
-      start = sample->start;
-      ++result.starts;
+      reference = sample->reference;
+      ++result.references;
     }
-    const bool within = errors.add(pair, *sample, *anchor, result.starts == 1);
+    const bool within = errors.add(pair, *sample, *anchor, result.references == 1);
     silent.add(pair.t, sample->good && !within);
   }
   errors.write(result);

@@ -10,14 +10,14 @@
 
 namespace edged {
 
-/// An estimated state of the body with its covariance relative to the start, where position and yaw are exact.
+/// An estimated state of the body with its covariance relative to a pose whose position and yaw are exact.
 struct StateCovarianceSample {
   Timestamp t;
   SE3 T_W_B;
   Eigen::Vector3d v_W;
   StateCovariance covariance;
-  bool good = true;  ///< the status was Good
-  int start = 0;     ///< number of the start of the estimator
+  bool good = true;   ///< the status was Good
+  int reference = 0;  ///< number of that pose: that of the first start, then of each relocalization
 };
 
 /// A normal error of three dimensions has a mean of 3 and shares of 99.73 %. No share where there are no poses.
@@ -46,7 +46,7 @@ struct PoseErrorSample {
 };
 
 struct Consistency {
-  std::size_t poses = 0, starts = 0;
+  std::size_t poses = 0, references = 0;
   NormalizedErrors position, rotation, velocity;
   std::vector<NeesAt> at;  ///< some instants of the first start: kNeesAt_s, as far as the run reaches
   /// Time spans of silent divergence: for more than 0.5 s all poses are Good, but position or rotation are beyond three
@@ -61,7 +61,7 @@ struct Consistency {
 inline constexpr std::array kNeesAt_s = {5.0, 20.0, 60.0, 300.0};
 
 /// Compares samples with the ground truth: the same body on the same clock, both in time order. The first Good pose of
-/// each start is aligned with the truth, position and yaw; poses before it are ignored. As that pose is not exact
+/// each reference is aligned with the truth, position and yaw; poses before it are ignored. As that pose is not exact
 /// either (after a start in motion it is centimetres off), its covariance is added to that of each error. Errors below
 /// 0.1 mm, 0.1 mrad and 1 mm/s are never too large. The true velocity is that of neighbouring true poses: where they
 /// are noisy, as those of a motion capture system, its errors say little. Only position and rotation decide what is

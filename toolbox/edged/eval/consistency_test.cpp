@@ -54,7 +54,7 @@ TEST(Consistency, NormalErrorsOfTheClaimedSizeHaveTheMeansAndSharesOfChiSquare) 
   const Trajectory truth = winding_motion(200.0);
   const Consistency found = check_consistency(truth, covariance_samples_of(truth));
   EXPECT_EQ(found.poses, truth.size());
-  EXPECT_EQ(found.starts, 1U);
+  EXPECT_EQ(found.references, 1U);
   for (const NormalizedErrors& errors : {found.position, found.rotation, found.velocity}) {
     EXPECT_NEAR(errors.mean_nees, 3.0, 0.1);  // sqrt(6 / 10000) = 0.025 by chance
     EXPECT_GT(errors.max_nees, 16.0);
@@ -83,7 +83,7 @@ TEST(Consistency, MeansAroundSomeInstantsOfTheFirstStart) {
     for (const double nees : {at.position, at.rotation, at.velocity}) EXPECT_NEAR(nees, 3.0, 1.6);  // of 25 poses
   }
   for (StateCovarianceSample& sample : samples) {
-    sample.start = sample.t > timestamp_from_seconds(110.0) ? 1 : 0;
+    sample.reference = sample.t > timestamp_from_seconds(110.0) ? 1 : 0;
     sample.covariance.velocity.setZero();
   }
   found = check_consistency(truth, samples);
@@ -145,7 +145,7 @@ TEST(Consistency, PosesThatAreNotCalledGoodDivergeButNotSilently) {
   EXPECT_NEAR(found.position.within, 1.0 - 3.0 / 20.0, 0.01);
 }
 
-TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
+TEST(Consistency, EveryReferenceIsAlignedWithTheTruthAnew) {
   const Trajectory truth = winding_motion(20.0);
   std::vector<StateCovarianceSample> samples = covariance_samples_of(truth);
   const SE3 jump(so3::exp({0.0, 0.0, -0.5}), Eigen::Vector3d(1.0, 0.0, 0.0));
@@ -156,9 +156,9 @@ TEST(Consistency, EveryStartIsLaidOntoTheTruthAnew) {
     samples[i].covariance.position = jump.R() * samples[i].covariance.position * jump.R().transpose();
   }
   EXPECT_GT(check_consistency(truth, samples).silent_s(), 9.0);
-  for (std::size_t i = half; i < samples.size(); ++i) samples[i].start = 1;
+  for (std::size_t i = half; i < samples.size(); ++i) samples[i].reference = 1;
   const Consistency found = check_consistency(truth, samples);
-  EXPECT_EQ(found.starts, 2U);
+  EXPECT_EQ(found.references, 2U);
   EXPECT_TRUE(found.silent.empty());
   EXPECT_NEAR(found.position.mean_nees, 3.0, 0.3);
 }

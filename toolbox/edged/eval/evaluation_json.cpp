@@ -62,7 +62,7 @@ nlohmann::ordered_json to_json(const TimeOffset& offset) {
 
 nlohmann::ordered_json to_json(const Consistency& c) {
   nlohmann::ordered_json json = {{"poses", c.poses},
-                                 {"starts", c.starts},
+                                 {"references", c.references},
                                  {"position", to_json(c.position)},
                                  {"rotation", to_json(c.rotation)},
                                  {"velocity", to_json(c.velocity)},

@@ -66,9 +66,9 @@ ExternalCounters Localization::external_counters() const {
 }
 
 void Localization::begin_epoch() {
+  place_.end_estimate(in_place());
   session_ = new_session(session_.bias_prior, external_counters(), Timestamp::min());
   mapper_.begin_epoch();
-  place_ = {};
   status_.set_lost("a clock was set back");
   if (attitude_) attitude_.emplace(noise_);
 }
@@ -95,7 +95,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
       output.correction);
-  session_.uncertainty.place_sigma = place_.sigma();
+  session_.uncertainty.place_sigma = place_.unmeasured();
   const TrackingStatus of_odometry = status_.update(result, session_.uncertainty, session_.estimator.initialized(), t);
   const bool relocalized = update_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
@@ -110,7 +110,9 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   output.correction.ended = of_odometry == TrackingStatus::Lost && session_.estimator.initialized();
   if (output.correction.ended) {
     if (status_.vision_lost()) map_window();
-    if (!status_.vision_lost() && !status_.contradicted()) place_.end_estimate(velocity_sigma_in_place());
+    place_.end_estimate(status_.vision_lost()    ? dead_reckoning()
+                        : status_.contradicted() ? contradicted()
+                                                 : in_place());
     session_ = new_session(prior_after_loss(), external_counters(),
                            status_.vision_lost() ? t + kPipelineTuning.dead_reckoning : t);
   }
@@ -145,7 +147,7 @@ LocalizationOutput Localization::end_at_gap(const Preintegration& motion, const 
   for (const CameraObservations& view : seen.observations)
     for (const FeatureObservation& feature : view.features) output.correction.outliers.push_back(feature.id);
   output.correction.ended = true;
-  place_.end_estimate(velocity_sigma_in_place());
+  place_.end_estimate(in_place());
   place_.dead_reckon(motion);
   session_ = new_session(prior_after_loss(), external_counters(), t);
   return output;
@@ -192,6 +194,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   // The drift of the map filter is that of an odometry with a gyro: without one, the pose is as uncertain as after a
   // loss.
   if (result.new_frame) {
+    session_.started_at_O = body_.now().T_O_B.translation();
     session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
     session_.uncertainty.scale_sigma.reset();
     mapper_.restart(T_new_old, body_.now());
@@ -279,10 +282,47 @@ std::optional<std::string> Localization::save_map() const {
   return to_bytes(*map);
 }
 
+PlaceUncertainty::DeadReckoning Localization::dead_reckoning() const {
+  if (!session_.covariance) return {};
+  const Eigen::Vector3d up_B = body_.now().T_O_B.R().row(2);
+  const auto& [position, rotation, velocity] = *session_.covariance;
+  return {.velocity = std::sqrt(velocity.diagonal().maxCoeff()),
+          .tilt = std::sqrt(rotation.diagonal().maxCoeff()),
+          .yaw = std::sqrt(up_B.dot(rotation * up_B))};
+}
+
 /// After a loss without dead reckoning the body stays in place, which is wrong by all of its velocity.
-double Localization::velocity_sigma_in_place() const {
-  const double variance = session_.covariance ? session_.covariance->velocity.diagonal().maxCoeff() : 0.0;
-  return std::hypot(std::sqrt(variance), body_.now().v_O.norm());
+PlaceUncertainty::DeadReckoning Localization::in_place() const {
+  PlaceUncertainty::DeadReckoning begin = dead_reckoning();
+  begin.velocity = std::hypot(begin.velocity, body_.now().v_O.norm());
+  begin.measured = false;
+  return begin;
+}
+
+/// The motion of a contradicted estimate is wrong by an unknown share; it would have been contradicted before if it
+/// were wrong for long.
+PlaceUncertainty::DeadReckoning Localization::contradicted() const {
+  PlaceUncertainty::DeadReckoning begin = in_place();
+  begin.position = std::min((body_.now().T_O_B.translation() - session_.started_at_O).norm(),
+                            begin.velocity * to_seconds(kPipelineTuning.bias_history));
+  begin.measured = true;
+  return begin;
+}
+
+/// P is relative to the start of the estimator; what earlier losses leave uncertain comes on top.
+StateCovariance Localization::covariance_in_map(const Matrix15d& P) const {
+  const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
+  const OdomState& now = body_.now();
+  const Eigen::Vector3d up_B = now.T_O_B.R().row(2);
+  const auto by_yaw = [&](const Eigen::Vector3d& v_O) -> Eigen::Matrix3d {
+    const Eigen::Vector3d swing = place_.yaw() * Eigen::Vector3d::UnitZ().cross(R_M_O * v_O);
+    return swing * swing.transpose();
+  };
+  const auto in_M = [&](const Eigen::Matrix3d& P_O) -> Eigen::Matrix3d { return R_M_O * P_O * R_M_O.transpose(); };
+  return {in_M(P.block<3, 3>(0, 0)) + place_.position() * place_.position() * Eigen::Matrix3d::Identity() +
+              by_yaw(now.T_O_B.translation() - session_.started_at_O),
+          P.block<3, 3>(3, 3) + place_.yaw() * place_.yaw() * up_B * up_B.transpose(),
+          in_M(P.block<3, 3>(6, 6)) + by_yaw(now.v_O)};
 }
 
 void Localization::update_covariance(Timestamp t) {
@@ -299,9 +339,7 @@ void Localization::update_covariance(Timestamp t) {
     if (session_.uncertainty.velocity_sigma < config_.status.max_velocity_sigma)  // else unknown, whatever the scale
       session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
     session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
-    const Eigen::Matrix3d R_M_O = mapper_.odom_to_map().T_M_O().R();
-    session_.covariance = {R_M_O * P->block<3, 3>(0, 0) * R_M_O.transpose(), P->block<3, 3>(3, 3),
-                           R_M_O * P->block<3, 3>(6, 6) * R_M_O.transpose()};
+    session_.covariance = covariance_in_map(*P);
   }
 }
 

@@ -72,6 +72,7 @@ class Localization {
     Uncertainty uncertainty = {};                            ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
+    Eigen::Vector3d started_at_O = Eigen::Vector3d::Zero();
   };
   Session new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier, Timestamp until) const;
   std::optional<BiasPrior> prior_after_loss() const;
@@ -82,7 +83,10 @@ class Localization {
   std::string missing_localization() const;
   std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void update_covariance(Timestamp t);
-  double velocity_sigma_in_place() const;
+  PlaceUncertainty::DeadReckoning dead_reckoning() const;
+  PlaceUncertainty::DeadReckoning in_place() const;
+  PlaceUncertainty::DeadReckoning contradicted() const;
+  StateCovariance covariance_in_map(const Matrix15d& P) const;
   void map_window();
   bool seen_by_frames(const VisionOutput& seen) const;
   LocalizationOutput end_at_gap(const Preintegration& motion, const VisionOutput& seen);

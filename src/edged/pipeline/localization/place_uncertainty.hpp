@@ -1,18 +1,28 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// How well the position in the map is known after gaps of all sensors and losses, until the body is relocalized.
+// How well the place in the map is known after gaps of all sensors and losses, until the body is relocalized.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "edged/imu/preintegration.hpp"
+#include "edged/state.hpp"
 
 namespace edged {
 
 /// Sigmas of the worst axis. Drift while the estimate goes on is none of it: the map bounds that.
 class PlaceUncertainty {
  public:
+  /// What dead reckoning begins with.
+  struct DeadReckoning {
+    double position = 0.0;  ///< beyond that of the estimate [m]
+    double velocity = 0.0;  ///< [m/s]
+    double tilt = 0.0;      ///< a share of gravity is taken for acceleration [rad]
+    double yaw = 0.0;       ///< [rad]
+    bool measured = true;   ///< by the IMU, from a velocity that was known
+  };
+
   /// The estimate goes on after a gap.
   void end_gap() { after_gap_ = true; }
   /// position_sigma: of the newest estimate, since its start [m]; enough: the place counts as known.
@@ -25,28 +35,36 @@ class PlaceUncertainty {
     after_gap_ = false;
     by_gap_ = 0.0;
   }
-  /// The estimate has ended. velocity_sigma: of dead reckoning, which begins [m/s].
-  void end_estimate(double velocity_sigma) {
-    by_losses_ = std::hypot(sigma(), position_sigma_);
-    velocity_sigma_ = velocity_sigma;
+  /// The estimate has ended.
+  void end_estimate(const DeadReckoning& begin) {
+    position_ = std::hypot(std::hypot(position_, begin.position), position_sigma_, by_gap_);
+    yaw_ = std::hypot(yaw_, begin.yaw);
+    measured_ = measured_ && begin.measured && by_gap_ == 0.0;
+    velocity_ = begin.velocity;
+    acceleration_ = kGravity * begin.tilt;
     position_sigma_ = by_gap_ = 0.0;
     after_gap_ = false;
   }
   /// Without an estimate.
   void dead_reckon(const Preintegration& motion) {
     const auto variances = motion.covariance().diagonal();
-    by_losses_ = std::hypot(by_losses_ + velocity_sigma_ * motion.dt(), std::sqrt(variances.segment<3>(6).maxCoeff()));
-    velocity_sigma_ = std::hypot(velocity_sigma_, std::sqrt(variances.segment<3>(3).maxCoeff()));
+    position_ = std::hypot(position_ + velocity_ * motion.dt(), std::sqrt(variances.segment<3>(6).maxCoeff()));
+    velocity_ = std::hypot(velocity_ + acceleration_ * motion.dt(), std::sqrt(variances.segment<3>(3).maxCoeff()));
+    yaw_ = std::hypot(yaw_, std::sqrt(variances.head<3>().maxCoeff()));
   }
-  void relocalize() { by_losses_ = by_gap_ = 0.0, after_gap_ = false; }
+  void relocalize() { *this = PlaceUncertainty(); }
 
-  double sigma() const { return std::hypot(by_losses_, by_gap_); }  ///< [m]
+  /// By losses: of the start of the present estimate.
+  double position() const { return position_; }  ///< [m]
+  double yaw() const { return yaw_; }            ///< [rad]
+  /// Of the position where the motion since was not measured; else 0.
+  double unmeasured() const { return std::hypot(measured_ ? 0.0 : position_, by_gap_); }
 
  private:
   double position_sigma_ = 0.0;  ///< of the estimate, before a gap
-  bool after_gap_ = false;
-  double by_gap_ = 0.0, by_losses_ = 0.0;
-  double velocity_sigma_ = 0.0;
+  bool after_gap_ = false, measured_ = true;
+  double by_gap_ = 0.0, position_ = 0.0, yaw_ = 0.0;
+  double velocity_ = 0.0, acceleration_ = 0.0;
 };
 
 }  // namespace edged

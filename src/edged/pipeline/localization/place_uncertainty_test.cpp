@@ -19,7 +19,7 @@ Preintegration motion(double length_s, bool gap) {
 TEST(PlaceUncertainty, IgnoresDriftWithoutAGap) {
   PlaceUncertainty place;
   for (const double sigma : {0.01, 0.2, 0.5}) place.update(sigma, kEnough_m);
-  EXPECT_EQ(place.sigma(), 0.0);
+  EXPECT_EQ(place.unmeasured(), 0.0);
 }
 
 TEST(PlaceUncertainty, HoldsWhatAGapAddsUntilTheCamerasOrTheMapTell) {
@@ -27,30 +27,48 @@ TEST(PlaceUncertainty, HoldsWhatAGapAddsUntilTheCamerasOrTheMapTell) {
   place.update(0.1, kEnough_m);
   place.end_gap();
   place.update(0.6, kEnough_m);
-  EXPECT_NEAR(place.sigma(), 0.5, 1e-12);
+  EXPECT_NEAR(place.unmeasured(), 0.5, 1e-12);
   PlaceUncertainty relocalized = place;
   relocalized.relocalize();
-  EXPECT_EQ(relocalized.sigma(), 0.0);
+  EXPECT_EQ(relocalized.unmeasured(), 0.0);
   place.update(0.12, kEnough_m);
-  EXPECT_EQ(place.sigma(), 0.0);
+  EXPECT_EQ(place.unmeasured(), 0.0);
   place.update(0.6, kEnough_m);
-  EXPECT_EQ(place.sigma(), 0.0) << "later drift is none of it";
+  EXPECT_EQ(place.unmeasured(), 0.0) << "later drift is none of it";
 }
 
 TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized) {
   PlaceUncertainty place;
   place.update(0.03, kEnough_m);
-  place.end_estimate(0.2);
-  EXPECT_NEAR(place.sigma(), 0.03, 1e-12);
+  place.end_estimate({.velocity = 0.2, .yaw = 0.01});
+  EXPECT_NEAR(place.position(), 0.03, 1e-12);
+  EXPECT_NEAR(place.yaw(), 0.01, 1e-12);
   place.dead_reckon(motion(0.02, false));
-  EXPECT_NEAR(place.sigma(), 0.034, 1e-3);
+  EXPECT_NEAR(place.position(), 0.034, 1e-3);
+  EXPECT_EQ(place.unmeasured(), 0.0) << "the IMU tells the motion";
   place.dead_reckon(motion(2.0, true));
-  EXPECT_GT(place.sigma(), 2.5) << "2.2 sqrt(2^3 / 3) of the gap";
-  const double sigma = place.sigma();
+  EXPECT_GT(place.position(), 2.5) << "2.2 sqrt(2^3 / 3) of the gap";
+  EXPECT_GT(place.yaw(), 0.7);
+  const double sigma = place.position();
   place.update(0.01, kEnough_m);
-  EXPECT_EQ(place.sigma(), sigma);
+  EXPECT_EQ(place.position(), sigma);
   place.relocalize();
-  EXPECT_EQ(place.sigma(), 0.0);
+  EXPECT_EQ(place.position(), 0.0);
+}
+
+TEST(PlaceUncertainty, TakesAShareOfGravityForAcceleration) {
+  PlaceUncertainty place;
+  place.end_estimate({.tilt = 0.01});
+  for (int i = 0; i < 200; ++i) place.dead_reckon(motion(0.01, false));
+  EXPECT_NEAR(place.position(), 0.5 * 0.01 * kGravity * 4.0, 0.03);
+}
+
+TEST(PlaceUncertainty, DistinguishesMotionThatNothingMeasured) {
+  PlaceUncertainty place;
+  place.end_estimate({.velocity = 0.5, .measured = false});
+  for (int i = 0; i < 100; ++i) place.dead_reckon(motion(0.01, false));
+  EXPECT_NEAR(place.unmeasured(), 0.5, 0.01);
+  EXPECT_EQ(place.unmeasured(), place.position());
 }
 
 }  // namespace
