@@ -106,6 +106,19 @@ TEST(Checks, NamesAMissingSlowOrHolyImu) {
   EXPECT_THAT(remedy_of(s, {}, Error, "longest 0.600 s at 3.000 s"), HasSubstr("USB"));
 }
 
+TEST(Checks, NamesRefusedImuSamplesAndNotTheGapTheyLeave) {
+  RecordingStatistics s = healthy();
+  s.imu.gaps = 1, s.imu.missing = std::chrono::milliseconds(600);
+  s.imu.longest = {{timestamp_from_seconds(3), s.imu.missing}};
+  s.imu_faults[ImuFault::Repeated] = {120, timestamp_from_seconds(3), std::chrono::milliseconds(595), 0b111};
+  const std::vector<Finding> findings = check_recording({s, false});
+  EXPECT_THAT(remedy_of(findings, Error, "120 IMU samples that repeat a reading: gyro for 0.595 s from 3.000 s"),
+              HasSubstr("driver repeats"));
+  EXPECT_EQ(remedy_of(findings, Error, "IMU gaps"), "NO SUCH FINDING");
+  s.imu.missing += std::chrono::seconds(1);
+  EXPECT_THAT(remedy_of(s, {}, Error, "IMU gaps"), HasSubstr("USB"));
+}
+
 TEST(Checks, NamesAnImuWhoseClockRunsAtAnotherRateAndNoCalibration) {
   CameraCheck check = agreeing();
   check.camera.T_B_C = SE3(so3::exp({0, 0, -1.5}), {0, 0, 0});

@@ -14,6 +14,8 @@
 namespace edged {
 namespace {
 
+constexpr Duration kLongGap = std::chrono::milliseconds(500);  // a longer one loses a run
+
 void check_imu_rate(const CheckInput& input, Findings& out) {
   const RecordingStatistics& s = input.recording;
   const double rate = s.imu.typical_step > Duration(0) ? 1.0 / to_seconds(s.imu.typical_step) : 0.0;
@@ -22,14 +24,26 @@ void check_imu_rate(const CheckInput& input, Findings& out) {
              "record it at 200 Hz or more: between samples the motion is interpolated");
   else
     out.good(fmt::format("IMU at {:.0f} Hz", rate));
-  if (s.imu.gaps == 0) return;
-  const Gap& longest = s.imu.longest.front();
-  const std::string text =
-      fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", s.imu.gaps,
-                  to_seconds(s.imu.missing), to_seconds(longest.length), to_seconds(longest.after));
+}
+
+/// Time of the IMU's samples in stretches that the gate refuses.
+Duration refused_time(const RecordingStatistics& s) {
+  std::size_t samples = 0;
+  for (const ImuFaultRecord& fault : s.imu_faults)
+    if (fault.longest > Duration(0)) samples += fault.count;
+  return s.imu.typical_step * static_cast<Duration::rep>(samples);
+}
+
+/// Gaps that the gate makes are no findings of their own.
+void check_gaps(const CheckInput& input, Findings& out) {
+  const StreamStatistics& imu = input.recording.imu;
+  if (imu.gaps == 0 || refused_time(input.recording) > imu.missing * 9 / 10) return;
+  const Gap& longest = imu.longest.front();
+  const std::string text = fmt::format("{} IMU gaps of {:.3f} s together, the longest {:.3f} s at {:.3f} s", imu.gaps,
+                                       to_seconds(imu.missing), to_seconds(longest.length), to_seconds(longest.after));
   const std::string remedy =
       "in a gap the cameras alone determine the motion; look for an overloaded USB bus or a full disk";
-  to_seconds(longest.length) > 0.5 ? out.error(text, remedy) : out.warn(text, remedy);
+  longest.length > kLongGap ? out.error(text, remedy) : out.warn(text, remedy);
 }
 
 /// A working sensor does not repeat its readings to the last bit for long, neither all axes nor one of them.
@@ -75,8 +89,9 @@ void check_gate(const CheckInput& input, Findings& out) {
         fault.axes == 0 ? fmt::format("the first at {:.3f} s", to_seconds(fault.from))
                         : fmt::format("{} for {:.3f} s from {:.3f} s on is the longest", axes_text(fault.axes),
                                       to_seconds(fault.longest), to_seconds(fault.from));
-    out.warn(fmt::format("{} IMU samples {}: {}", fault.count, imu_fault_infos()[i].text, where),
-             std::string(imu_fault_infos()[i].remedy));
+    const std::string text = fmt::format("{} IMU samples {}: {}", fault.count, imu_fault_infos()[i].text, where);
+    const std::string remedy(imu_fault_infos()[i].remedy);
+    fault.longest > kLongGap ? out.error(text, remedy) : out.warn(text, remedy);
   }
   // Readers drop some before the gate.
   const auto dropped = input.recording.repairs.find("imu: out of order, dropped");
@@ -203,8 +218,8 @@ void check_gyro_unit(const CheckInput& input, Findings& out) {
                          compared ? "" : " (its unit is not checked against a camera)"));
 }
 
-constexpr Check kImuChecks[] = {check_imu_rate, check_gate,       check_clock,    check_frozen_readings,
-                                check_columns,  check_accel_unit, check_gyro_unit};
+constexpr Check kImuChecks[] = {check_imu_rate,        check_gate,    check_gaps,       check_clock,
+                                check_frozen_readings, check_columns, check_accel_unit, check_gyro_unit};
 
 }  // namespace
 
