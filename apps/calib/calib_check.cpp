@@ -37,7 +37,8 @@ class CheckRun {
   /// begin: the initial calibration of the cameras.
   CheckRun(Source& source, const Rig& begin, Mode mode, bool quiet)
       : source_(source),
-        check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics),
+        check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics,
+               noise_of(source.calibration)),
         odometry_(begin, source.calibration.imu, mode, config_, {kInOrder}),
         status_(quiet),
         rig_(odometry_.rig()),

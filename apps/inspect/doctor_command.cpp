@@ -12,6 +12,7 @@
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
+#include "edged/checks/agreement/accel_axes.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
 #include "edged/checks/checks.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -70,11 +71,12 @@ int run_doctor(const DoctorOptions& options) {
   const Recording recording = open_uncalibrated(options.source);
   std::vector<VisualTurns> visual;
   GyroIntegral gyro;
+  AccelAxes axes;
   ExternalCheck external;
   const std::vector<CheckedCamera> cameras = cameras_to_check(recording);
   for (const CheckedCamera& checked : cameras) visual.emplace_back(checked.camera);
   const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
-    if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample);
+    if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample), axes.add(*sample);
     if (const auto* sample = std::get_if<ExternalSample>(&measurement)) external.add(*sample);
     for (std::size_t i = 0; i < cameras.size(); ++i)
       if (const std::string* camera = camera_of(measurement); camera && *camera == cameras[i].recorded)
@@ -89,7 +91,9 @@ int run_doctor(const DoctorOptions& options) {
          compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
          other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio()),
          least_turning(cameras[i].camera.modality)});
-  std::vector<Finding> findings = check_recording({read.survey, recording.calibration.has_value(), std::move(checks)});
+  std::vector<Finding> findings =
+      check_recording({read.survey, recording.calibration.has_value(), std::move(checks), false, axes.better(),
+                       recording.calibration ? noise_of(*recording.calibration) : std::nullopt});
   external.judge(gyro, read.survey.external, findings);
   if (read.survey.events.count + read.survey.frames.count == 0)
     if (const auto start_s = cameras_start_after_s(options.source)) findings = {cameras_start_later(*start_s)};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "common/findings.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/checks/run_check.hpp"
 #include "edged/core/angles.hpp"
@@ -58,7 +59,8 @@ void judge_rig(const Rig& given, const Rig& found, const CalibrationConfig& conf
 class RunChecks : public RunObserver {
  public:
   explicit RunChecks(RunContext& run)
-      : run_(run), check_(run.info(), run.used, run.source.calibration.has_extrinsics) {}
+      : run_(run),
+        check_(run.info(), run.used, run.source.calibration.has_extrinsics, noise_of(run.source.calibration)) {}
 
   void on_measurement(const Measurement& measurement) override {
     const auto timer = run_.timings.measure_often("check");
@@ -75,7 +77,7 @@ class RunChecks : public RunObserver {
     for (Finding& finding : check_.findings(*run_.source.dataset, end.truth, dropped_frames))
       summary.verdict.findings.push_back(std::move(finding));
     judge_external(end.counters, summary.verdict.findings);
-    judge_rig(given, run_.rig, config, summary.verdict.findings);
+    if (!has_error(summary.verdict.findings)) judge_rig(given, run_.rig, config, summary.verdict.findings);
     for (CalibrationFound& found : summary.calibration)
       found.beyond = found.beyond && !check_.agrees_with(run_.rig.camera(found.camera));
   }

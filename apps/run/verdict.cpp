@@ -212,18 +212,22 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
   Verdict& verdict = s.verdict;
   const RunStatistics& statistics = s.statistics;
   const bool ever_good = statistics.first_good_s().has_value();
-  if (!imu_unusable(verdict.findings))
+  // What is wrong with recording or calibration explains what was estimated with it.
+  const bool explained = has_error(verdict.findings) || is_unusable(Unusable::Calibration, verdict.findings);
+  if (!explained)
     for (const CalibrationFound& found : s.calibration) {
       judge_calibration(found, verdict.findings);
       judge_lens_and_position(found, verdict.findings);
     }
   if (ever_good) {
     judge_losses(statistics, s.run.localize_only, verdict.findings);
-    judge_scale(statistics, verdict.findings);
-    if (!imu_unusable(verdict.findings)) judge_biases(statistics, verdict.findings);
+    if (!explained) {
+      judge_scale(statistics, verdict.findings);
+      judge_biases(statistics, verdict.findings);
+    }
   }
   if (s.live) judge_live(*s.live, statistics, verdict.findings);
-  judge_against_truth(s, verdict.findings);
+  if (!explained && !is_unusable(Unusable::Truth, verdict.findings)) judge_against_truth(s, verdict.findings);
   const bool lost = statistics.last_status() == TrackingStatus::Lost;
   if (!ever_good || lost) verdict.waiting_for = statistics.waiting_for();
   verdict.contradicted = has_error(verdict.findings);

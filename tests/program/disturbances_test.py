@@ -26,7 +26,7 @@ class Row:
     remedy: str = ""
     doctor: int = 0  # exit code
     run: int | None = None  # exit code; None: `doctor` alone is asked
-    never: str = "camera"  # what neither may say, as it is a consequence
+    never: str = "camera|covariance"  # what neither may say, as it is a consequence
 
 
 def imu(change):
@@ -84,6 +84,52 @@ def silence(seconds):
     return {name: without for name in ("imu.txt", "images.txt", "events.txt")}
 
 
+def truth(change):
+    """change(poses from AT on, each [t, x, y, z, qx, qy, qz, qw])"""
+    def changed(lines):
+        rows = [[float(v) for v in line.split()] for line in lines if not line.startswith("#")]
+        change([row for row in rows if row[0] >= AT])
+        return [" ".join(map(repr, row)) + "\n" for row in rows]
+    return {"groundtruth.txt": changed}
+
+
+def frozen(poses):
+    for pose in poses[:200]:
+        pose[1:] = poses[0][1:]
+
+
+def flipped(poses):
+    for pose in poses[100:150]:
+        x, y, z, w = pose[4:]
+        pose[1:] = [pose[1] + 0.2, *pose[2:4], -y, x, w, -z]  # a half turn about z
+
+
+def zero(poses):
+    for pose in poses[:200]:
+        pose[1:] = [0, 0, 0, 0, 0, 0, 1]
+
+
+def millimetres(poses):
+    for pose in poses[:200]:
+        pose[1:4] = [1000 * v for v in pose[1:4]]
+
+
+def calibration(pattern, change):
+    """The numbers of each match, by change(number)."""
+    def changed(text):
+        return re.sub(pattern, lambda m: m[1] + re.sub(r"[-\d.e]+", lambda n: repr(change(float(n[0]))), m[2]), text)
+    return {"calibration.yaml": lambda lines: [changed("".join(lines))]}
+
+
+def events(change):
+    """Their pixels."""
+    def changed(lines):
+        for t, x, y, p in map(str.split, lines):
+            x, y = change(int(x), int(y))
+            yield f"{t} {x} {y} {p}\n"
+    return {"events.txt": changed}
+
+
 def repeats(which, seconds):
     lengths = "|".join(f"{seconds - ms / 1000:.3f}" for ms in range(3))  # samples at either end
     return rf"IMU samples that repeat a reading: {which} for ({lengths}) s from {{at}}\d+ s"
@@ -109,6 +155,23 @@ ROWS = {
     "bursts_of_3": Row(bursts(3), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample", run=0),
     "bursts_of_5": Row(bursts(5), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample"),
     "bursts_of_20": Row(bursts(20), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample", run=0),
+    "imu_late": Row(imu(lambda rows, _: [[row[0] + 0.15, *row[1:]] for row in rows]), "error",
+                    r"camera frames: t_imu = t_cam \+15\d\.\d ms", r"set time_offset of this camera to 0\.15", doctor=3, run=5, never="rotation|truth"),
+    "accelerometer_turned": Row(imu(lambda rows, _: [[row[0], -row[2], row[1], *row[3:]] for row in rows]), "error",
+                                "accelerometer: gravity does not turn in its axes", r"\(y, -x, z\) would fit", doctor=3, run=5),
+    "noise_too_large": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: 1000 * n), "error",
+                           r"gyro: calibrated noise of 0\.12 .* 0\.0001\d* at rest", "density", doctor=3, run=5, never="scale"),
+    "noise_too_small": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: n / 1000), "warning",
+                           r"accelerometer: calibrated noise of 4e-06 .* 0\.00\d* at rest", "density", run=0),
+    "images_thrice": Row({"images.txt": lambda lines: [f"{float(t) + k:.6f} {name}\n" for t, name in map(str.split, lines)
+                                                       for k in (0, 0.01, 0.02)]}, "warning", r"6\d % of the frames repeat the image before", "leave the repeated ones out", run=0),
+    "truth_frozen": Row(truth(frozen), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0, never="covariance"),
+    "truth_flipped": Row(truth(flipped), "warning", r"ground truth: 2 jumps, the first at 3\.500 s by 0\.2\d m and 180 deg", "leave the wrong poses out", run=0),
+    "truth_zero": Row(truth(zero), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0),
+    "truth_in_millimetres": Row(truth(millimetres), "warning", r"ground truth: 2 jumps, the first at {at}", "leave the wrong poses out", run=0),
+    "events_halved": Row(events(lambda x, y: (x // 2, y // 2)), "error", "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, never="frames:"),
+    "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "camera events: its rotation .* contradicts the gyro", r"180|179|178", doctor=3, never="frames:"),
+    "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "camera events: its rotation .* as if its image were reflected", "", doctor=3, never="frames:"),
     "imu_reversed": Row(imu(lambda rows, _: rows[::-1]), "refused", "imu.txt:.* stamp goes back in time", "mend or replace the file", doctor=3, run=3),
     "all_silent_200_ms": Row(silence(0.2), "warning", r"1 IMU gaps of 0\.20\d s together, .* at {at}", "USB bus", run=0),
     "all_silent_500_ms": Row(silence(0.49), "warning", r"1 IMU gaps of 0\.49\d s together, .* at {at}", "USB bus"),
@@ -149,6 +212,8 @@ class Disturbances(WithFlight):
         if row.run is not None:
             result = edged("run", recording, "--mode", "frames", "--out", self.folder / "run", "--json", "--quiet")
             self.assert_named(row, result, row.run, lambda metrics: metrics["findings"])
+            if row.severity != "refused":
+                self.assertEqual(json.loads(result.stdout)["trusted"], row.run == 0)
 
 
 for name, of_table in ROWS.items():

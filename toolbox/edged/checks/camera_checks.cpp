@@ -19,24 +19,30 @@ constexpr double kSigmas = 6.0;  // correlated errors of corners make sigmas too
 void check_shift(const CameraCheck& check, Findings& out) {
   // In low light, events are delayed by milliseconds, which is no error of the clock.
   constexpr double kDetermined_ms = 2.5;
-  // Of events, where the offset is less certain: moving objects and moving light cause errors that are correlated over
-  // a second, up to 9 sigmas.
+  constexpr double kMostCorrected_ms = 32.0;  // by a run: 4 sigma of estimator.calibration.time_offset_sigma_ms
+  // Where the offset is less certain: moving objects and moving light cause errors that are correlated over a second,
+  // up to 9 sigmas.
   constexpr double kSigmasOfVague = 10.0;
   const double least_ms = check.camera.modality == Modality::Events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
   const double sigma = 1e3 * found.time_sigma_s;
-  const bool is_vague = check.camera.modality == Modality::Events && sigma > kDetermined_ms;
+  const bool is_vague = sigma > kDetermined_ms;
   const double sigmas = is_vague ? kSigmasOfVague : kSigmas;
   const std::string text =
       fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
                   check.camera.name, shift, sigma, given);
+  const std::string remedy = fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset));
+  const double off = std::abs(shift - given);
+  const bool wrong = off > std::max(least_ms, sigmas * sigma);
   if (found.at_bound)
     out.warn(fmt::format("camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms by its turning",
                          check.camera.name, 1e3 * to_seconds(kMostShift), given),
              "check the clocks of camera and IMU");
-  else if (std::abs(shift - given) > std::max(least_ms, sigmas * sigma))
-    out.warn(text, fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset)));
+  else if (wrong && off > kMostCorrected_ms && !is_vague)
+    out.error(text, remedy);
+  else if (wrong)
+    out.warn(text, remedy);
   else if (sigma > kDetermined_ms)
     out.note(fmt::format("camera {}: its time offset cannot be determined by its turning (+- {:.1f} ms)",
                          check.camera.name, sigma));
@@ -91,6 +97,7 @@ void check_rotation(const CameraCheck& check, Findings& out) {
   // A moving lamp that lights a part of the view gives turns of its own, 117 deg off at a sigma of 15 deg; cameras that
   // are mounted wrong and IMUs with negated axes have at most 11 deg.
   constexpr double kVague_deg = 12.0;
+  constexpr double kReflected_deg = 150.0;  // about an axis of the image: a camera that looks the other way
   const GyroAgreement& found = *check.agreement;
   const std::string name = "camera " + check.camera.name;
   const auto axis = unknown_axis(found);
@@ -111,7 +118,9 @@ void check_rotation(const CameraCheck& check, Findings& out) {
   const std::string remedy = fmt::format(
       "the calibration fits after a rotation by {:.1f} deg about the camera's axis ({:.2f}, {:.2f}, {:.2f})",
       error.degrees, about.x(), about.y(), about.z());
-  const std::string text = fmt::format("{}: its rotation to the IMU contradicts the gyro by {}", name, number);
+  const bool reflected = error.degrees > kReflected_deg && std::abs(about.z()) < 0.5;
+  const std::string text = fmt::format("{}: its rotation to the IMU contradicts the gyro by {}{}", name, number,
+                                       reflected ? ", as if its image were reflected" : "");
   if (inverse_fits(given, error, found))
     out.error(text + ", the inverse fits", kTurnRound);
   else if (error.degrees < kWrong_deg)
@@ -162,6 +171,14 @@ void check_gyro_scale(const CameraCheck& check, Findings& out) {
     out.good(fmt::format("camera {}: the gyro's scale agrees with it to {}", check.camera.name, number));
 }
 
+/// True if events fill a part of the sensor and are nowhere else.
+bool fill_a_part(const RecordingStatistics& s, cv::Size calibrated) {
+  constexpr double kWhole = 0.8, kFilled = 0.7;  // share of width and height; share of the pixels there that fired
+  const cv::Size seen = s.event_details.extent, counted = s.info.event_sensor.empty() ? seen : s.info.event_sensor;
+  return seen.width < kWhole * calibrated.width && seen.height < kWhole * calibrated.height &&
+         s.event_details.active_share * counted.area() > kFilled * seen.area();
+}
+
 /// False if the calibration is for a sensor of another size.
 bool check_size(const CameraCheck& check, const RecordingStatistics& s, Findings& out) {
   const cv::Size calibrated(check.camera.model.width(), check.camera.model.height());
@@ -169,10 +186,12 @@ bool check_size(const CameraCheck& check, const RecordingStatistics& s, Findings
   const auto further = std::ranges::find(s.more, check.camera.name, &RecordingStatistics::camera);
   const RecordingStatistics& of_camera = further == s.more.end() ? s : *further;
   const cv::Size seen = events ? of_camera.event_details.extent : of_camera.image_size;
-  const bool fits = events ? seen.width <= calibrated.width && seen.height <= calibrated.height : seen == calibrated;
+  const bool part = events && fill_a_part(of_camera, calibrated);
+  const bool fits =
+      events ? seen.width <= calibrated.width && seen.height <= calibrated.height && !part : seen == calibrated;
   if (!fits && !seen.empty())
-    out.error(fmt::format("camera {}: calibrated for {} x {} px, recorded {} x {}", check.camera.name, calibrated.width,
-                          calibrated.height, seen.width, seen.height),
+    out.error(fmt::format("camera {}: calibrated for {} x {} px, recorded {} x {}{}", check.camera.name,
+                          calibrated.width, calibrated.height, seen.width, seen.height, part ? " only" : ""),
               "choose the calibration of this camera, and of this resolution");
   return fits || seen.empty();
 }
@@ -214,6 +233,10 @@ void check_camera(const CameraCheck& check, Findings& out) {
 /// unrelated ones is 1.2 / sqrt(n).
 void check_accel(const CheckInput& input, Findings& out) {
   constexpr double kLeast = 0.3, kByChance = 3.0;
+  const auto turns_alike = [](const CameraCheck& check) { return check.sure() && !check.agreement->mirrored; };
+  if (input.accel_axes && std::ranges::any_of(input.cameras, turns_alike))
+    return out.error("accelerometer: gravity does not turn in its axes as measured by the gyro",
+                     fmt::format("give it the axes of the gyro: {} would fit", *input.accel_axes));
   const CameraCheck* best = nullptr;
   const auto surety = [=](const CameraCheck& check) {
     const AccelAgreement& accel = check.agreement->accel;
@@ -238,10 +261,12 @@ void check_accel(const CheckInput& input, Findings& out) {
 }  // namespace
 
 void check_cameras(const CheckInput& input, Findings& out) {
-  const bool comparable = !imu_unusable(out.list);
+  const bool comparable = !is_unusable(Unusable::Calibration, out.list);
+  const auto errors = [&out] { return std::ranges::count(out.list, Severity::Error, &Finding::severity); };
+  const auto before = errors();
   for (const CameraCheck& check : input.cameras)
     if (check_size(check, input.recording, out) && comparable) check_camera(check, out);
-  if (comparable) check_accel(input, out);
+  if (comparable && errors() == before) check_accel(input, out);
   if (!input.calibrated)
     out.note("no calibration, so none is checked", "give --rig NAME or --calib FILE");
   else if (input.cameras.empty())

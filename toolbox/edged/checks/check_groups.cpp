@@ -19,8 +19,8 @@ constexpr Check kGroups[] = {check_streams, check_imu,   check_pictures, check_e
 
 }  // namespace
 
-bool imu_unusable(const std::vector<Finding>& findings) {
-  return std::ranges::any_of(findings, &Finding::imu_unusable);
+bool is_unusable(Unusable what, const std::vector<Finding>& findings) {
+  return std::ranges::find(findings, what, &Finding::unusable) != findings.end();
 }
 
 std::vector<Finding> check_recording(const CheckInput& input) {

@@ -16,7 +16,7 @@ void check_imu(const CheckInput& input, Findings& out);
 void check_pictures(const CheckInput& input, Findings& out);
 /// Height and velocity sensors, in the order of their names.
 void check_external(const CheckInput& input, Findings& out);
-/// The calibration of each camera, by the gyro. Nothing while the IMU is unusable.
+/// The calibration of each camera, by the gyro. Nothing while it cannot be judged by that.
 void check_cameras(const CheckInput& input, Findings& out);
 void check_truth(const CheckInput& input, Findings& out);
 

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "edged/checks/agreement/gyro_agreement.hpp"
 #include "edged/checks/agreement/imu_clock.hpp"
 #include "edged/checks/finding.hpp"
 #include "edged/checks/statistics/recording_statistics.hpp"
+#include "edged/imu_noise.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -33,7 +35,9 @@ struct CheckInput {
   const RecordingStatistics& recording;
   bool calibrated = false;  ///< there is a calibration, possibly of other cameras than the recorded ones
   std::vector<CameraCheck> cameras = {};
-  bool dropped_frames = false;  ///< by the run itself, which was too slow for them
+  bool dropped_frames = false;                 ///< by the run itself, which was too slow for them
+  std::optional<std::string> accel_axes = {};  ///< AccelAxes::better()
+  std::optional<ImuNoise> noise = {};          ///< as calibrated
 };
 
 /// The remedy for a camera whose inverse transform fits.
@@ -41,8 +45,8 @@ inline constexpr const char* kTurnRound =
     "the transform points the other way, and so does its translation, which no run corrects: write it as T_C_B "
     "(`edged calib` shows both directions)";
 
-/// True if a finding states an error of the IMU itself.
-bool imu_unusable(const std::vector<Finding>& findings);
+/// True if a finding makes that unusable.
+bool is_unusable(Unusable what, const std::vector<Finding>& findings);
 
 /// All checks, in the order of their subjects: streams, IMU, events, frames, external sensors, calibration, ground
 /// truth, repairs.

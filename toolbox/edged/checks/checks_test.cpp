@@ -54,6 +54,42 @@ std::string remedy_of(const RecordingStatistics& recording, const std::vector<Ca
   return remedy_of(check_recording({recording, !cameras.empty(), cameras}), severity, text);
 }
 
+TEST(Checks, NamesNoiseFarFromThatAtRestWithBothValues) {
+  RecordingStatistics s = healthy();
+  s.imu_details.rest = ImuRest{timestamp_from_seconds(1), std::chrono::seconds(2), 1e-4, 2e-3};
+  const auto said = [&s](double gyro, double accel) {
+    CheckInput input{s, false};
+    input.noise.emplace();
+    input.noise->gyro_noise = gyro, input.noise->accel_noise = accel;
+    return check_recording(input);
+  };
+  EXPECT_THAT(remedy_of(said(0.1, 2e-3), Error, "gyro: calibrated noise of 0.1 rad/s/sqrt(Hz), but 0.0001 at rest"),
+              HasSubstr("density"));
+  EXPECT_NE(remedy_of(said(1e-4, 0.1), Warning, "accelerometer: calibrated noise of 0.1 m/s^2"), "NO SUCH FINDING");
+  EXPECT_NE(remedy_of(said(1e-7, 2e-6), Warning, "accelerometer: calibrated noise of 2e-06"), "NO SUCH FINDING");
+  for (const Finding& f : said(1e-3, 4e-4)) EXPECT_LE(f.severity, Note) << f.text;
+}
+
+TEST(Checks, NamesATruthThatContradictsItselfAndItsTime) {
+  RecordingStatistics s = healthy();
+  s.truth.emplace();
+  s.truth->stream = stream(100, 0, 10);
+  s.truth->jumps = 2, s.truth->first_jump = {timestamp_from_seconds(3), 1.5, 0.7};
+  EXPECT_THAT(remedy_of(s, {}, Warning, "2 jumps, the first at 3.000 s by 1.50 m and 40 deg"), HasSubstr("leave"));
+  EXPECT_TRUE(is_unusable(Unusable::Truth, check_recording({s})));
+  s.truth->frozen = std::chrono::seconds(1), s.truth->frozen_since = timestamp_from_seconds(2);
+  EXPECT_THAT(remedy_of(s, {}, Warning, "the same pose for 1.000 s from 2.000 s on"), HasSubstr("leave"));
+}
+
+TEST(Checks, NamesRepeatedImagesAndNoTimeOffset) {
+  RecordingStatistics s = healthy();
+  CameraCheck check = agreeing();
+  check.agreement->time_offset = std::chrono::milliseconds(12);
+  s.repeated_share = 0.67;
+  EXPECT_THAT(remedy_of(s, {check}, Warning, "67 % of the frames repeat the image before"), HasSubstr("driver"));
+  EXPECT_EQ(remedy_of(s, {check}, Warning, "t_imu"), "NO SUCH FINDING");
+}
+
 TEST(Checks, NameFramesThatTheRunDroppedAsItsOwn) {
   RecordingStatistics s = healthy();
   s.frames.gaps = 1, s.frames.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(300)}};
@@ -212,8 +248,26 @@ TEST(Checks, NamesAGyroWhoseScaleIsOffAndAnAccelerometerThatPointsTheOtherWay) {
               HasSubstr("divide the gyro by 1.100"));
   check.agreement->gyro_scale = 1.02;
   EXPECT_EQ(remedy_of(healthy(), {check}, Good, "scale agrees with it to 2.0 %"), "");
+  const RecordingStatistics s = healthy();
+  CheckInput input{s, true, {check}};
+  input.accel_axes = "(y, -x, z)";
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "gravity does not turn in its axes"), HasSubstr("(y, -x, z)"));
   check.agreement->accel = {100, -0.7};
   EXPECT_THAT(remedy_of(healthy(), {check}, Error, "moves against it"), HasSubstr("multiply it by -1"));
+}
+
+TEST(Checks, NamesACauseAndNotWhatFollowsFromIt) {
+  CameraCheck check = agreeing();
+  check.agreement->accel = {100, -0.7};
+  check.agreement->time_offset = std::chrono::milliseconds(60);
+  std::vector<Finding> findings = check_recording({healthy(), true, {check}});
+  EXPECT_THAT(remedy_of(findings, Error, "+60.0 ms"), HasSubstr("0.0600")) << "more than a run corrects";
+  EXPECT_EQ(std::ranges::count(findings, Error, &Finding::severity), 1);
+  check.agreement->time_offset = Duration(0);
+  check.agreement->R_B_C = so3::exp({0, 3.1, 0}).toRotationMatrix();
+  findings = check_recording({healthy(), true, {check}});
+  EXPECT_NE(remedy_of(findings, Error, "as if its image were reflected"), "NO SUCH FINDING");
+  EXPECT_EQ(remedy_of(findings, Error, "accelerometer"), "NO SUCH FINDING");
 }
 
 TEST(Checks, GuessesTheRotationOfACameraThatHasNone) {
@@ -232,6 +286,20 @@ TEST(Checks, NamesWhatIsMissingOrOfAnotherSize) {
   EXPECT_THAT(remedy_of(s, {agreeing()}, Error, "recorded 346 x 260"), HasSubstr("resolution"));
   EXPECT_THAT(remedy_of(healthy(), {}, Note, "no calibration"), HasSubstr("--rig"));
   EXPECT_EQ(remedy_of(check_recording({healthy(), true, {}}), Note, "no camera that could be compared"), "");
+}
+
+TEST(Checks, NamesEventsOfAPartOfTheCalibratedSensor) {
+  RecordingStatistics s = healthy();
+  CameraCheck check = agreeing();
+  check.camera.modality = Modality::Events;
+  check.camera.model = CameraModel(240, 180, 200, 200, 120, 90);
+  s.event_details.extent = {240, 180};
+  EXPECT_EQ(remedy_of(s, {check}, Error, "recorded"), "NO SUCH FINDING");
+  s.event_details.extent = {120, 90}, s.event_details.active_share = 0.1;
+  EXPECT_EQ(remedy_of(s, {check}, Error, "recorded"), "NO SUCH FINDING") << "few events";
+  s.event_details.active_share = 0.9;
+  EXPECT_THAT(remedy_of(s, {check}, Error, "calibrated for 240 x 180 px, recorded 120 x 90 only"),
+              HasSubstr("resolution"));
 }
 
 TEST(Checks, GivesNoNumberForAShiftBeyondItsSearch) {

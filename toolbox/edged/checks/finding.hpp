@@ -16,12 +16,18 @@ enum class Severity {
   Error     ///< a run fails or is wrong
 };
 
+/// What nothing can be judged by until a finding is mended.
+enum class Unusable {
+  Nothing,
+  Calibration,  ///< cameras cannot be compared with the IMU
+  Truth
+};
+
 struct Finding {
   Severity severity = Severity::Good;
   std::string text;    ///< one line with numbers
   std::string remedy;  ///< may be empty
-  /// An error of the IMU itself. Until it is corrected, no calibration can be checked.
-  bool imu_unusable = false;
+  Unusable unusable = Unusable::Nothing;
 };
 
 /// The findings of all checks, in order.
@@ -29,17 +35,18 @@ class Findings {
  public:
   void good(std::string text) { list.push_back({Severity::Good, std::move(text), ""}); }
   void note(std::string text, std::string remedy = "") { add(Severity::Note, std::move(text), std::move(remedy)); }
-  void warn(std::string text, std::string remedy) { add(Severity::Warning, std::move(text), std::move(remedy)); }
-  void error(std::string text, std::string remedy) { add(Severity::Error, std::move(text), std::move(remedy)); }
-  void imu_unusable(std::string text, std::string remedy) {
-    list.push_back({Severity::Error, std::move(text), std::move(remedy), true});
+  void warn(std::string text, std::string remedy, Unusable what = Unusable::Nothing) {
+    add(Severity::Warning, std::move(text), std::move(remedy), what);
+  }
+  void error(std::string text, std::string remedy, Unusable what = Unusable::Nothing) {
+    add(Severity::Error, std::move(text), std::move(remedy), what);
   }
 
   std::vector<Finding> list;
 
  private:
-  void add(Severity severity, std::string text, std::string remedy) {
-    list.push_back({severity, std::move(text), std::move(remedy)});
+  void add(Severity severity, std::string text, std::string remedy, Unusable what = Unusable::Nothing) {
+    list.push_back({severity, std::move(text), std::move(remedy), what});
   }
 };
 

@@ -51,18 +51,39 @@ void check_frozen(const char* sensor, const char* unit, const FrozenReadings& f,
   constexpr Duration kShort = std::chrono::seconds(1);
   const std::string value = fmt::format("({:.4g}, {:.4g}, {:.4g}) {}", f.value.x(), f.value.y(), f.value.z(), unit);
   if (f.dead())
-    return out.imu_unusable(
+    return out.error(
         f.value.isZero(0.0) ? fmt::format("{} is constant zero", sensor)
                             : fmt::format("{} does not change: it is {} all the time", sensor, value),
-        fmt::format("the driver does not set it, or it has a topic of its own: record the {}, too", sensor));
+        fmt::format("the driver does not set it, or it has a topic of its own: record the {}, too", sensor),
+        Unusable::Calibration);
   for (const std::size_t axis : {0, 1, 2})
     if (f.dead(axis))
-      out.imu_unusable(fmt::format("{}: its {} axis does not change", sensor, "xyz"[axis]),
-                       "check its columns and the driver: two axes are not enough");
+      out.error(fmt::format("{}: its {} axis does not change", sensor, "xyz"[axis]),
+                "check its columns and the driver: two axes are not enough", Unusable::Calibration);
   if (f.longest >= kShort)
     out.error(fmt::format("{} does not change for {:.1f} s from {:.3f} s: it reads {}", sensor, to_seconds(f.longest),
                           to_seconds(f.since), value),
               "the driver repeats its last sample: remove these samples, then they count as a gap");
+}
+
+/// Limits far beyond the factor of 2 to 5 of usual calibrations, and that of vibration.
+void check_noise(const CheckInput& input, Findings& out) {
+  constexpr double kTimes = 30.0, kFatal = 100.0;
+  const std::optional<ImuRest>& rest = input.recording.imu_details.rest;
+  if (!input.noise || !rest) return;
+  const auto compare = [&](const char* sensor, const char* unit, double given, double found) {
+    const double times = given / found;
+    if (found <= 0.0 || (times < kTimes && times > 1.0 / kTimes)) return;
+    const std::string text =
+        fmt::format("{}: calibrated noise of {:.2g} {}/sqrt(Hz), but {:.2g} at rest, for {:.1f} s from {:.3f} s on",
+                    sensor, given, unit, found, to_seconds(rest->length), to_seconds(rest->begin));
+    const std::string remedy =
+        "it is a density, not a deviation: write 2 to 5 times that at rest, which "
+        "`edged calib REC --imu-noise` measures";
+    times > kFatal ? out.error(text, remedy) : out.warn(text, remedy);
+  };
+  compare("gyro", "rad/s", input.noise->gyro_noise, rest->gyro_noise);
+  compare("accelerometer", "m/s^2", input.noise->accel_noise, rest->accel_noise);
 }
 
 std::string axes_text(unsigned axes) {
@@ -98,8 +119,8 @@ void check_gate(const CheckInput& input, Findings& out) {
   const std::size_t late = input.recording.imu_faults[ImuFault::Late].count +
                            (dropped == input.recording.repairs.end() ? 0 : dropped->second);
   if (late > input.recording.imu.count)
-    out.imu_unusable(fmt::format("{} IMU samples are late, {} are not", late, input.recording.imu.count),
-                     std::string(imu_fault_infos()[ImuFault::Late].remedy));
+    out.error(fmt::format("{} IMU samples are late, {} are not", late, input.recording.imu.count),
+              std::string(imu_fault_infos()[ImuFault::Late].remedy), Unusable::Calibration);
 }
 
 void check_frozen_readings(const CheckInput& input, Findings& out) {
@@ -139,11 +160,12 @@ void tell_clock_rate(const CheckInput& input, const CameraCheck& measured, doubl
   const double rate = as_lasts ? *known : measured.clock->rate;
   const bool far_off = std::abs(rate - 1.0) > 0.1;
   const bool lasts = far_off && std::abs(input.recording.imu_span_ratio() / rate - 1.0) < kSameLength;
-  out.imu_unusable(
+  out.error(
       fmt::format("{} clock runs at {:.{}f} times that of camera {}, by the rotation of both",
                   lasts ? lengths_text(input.recording, cameras_s) + ": its" : "the IMU's", rate, far_off ? 2 : 3,
                   measured.camera.name),
-      fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver", rate));
+      fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver", rate),
+      Unusable::Calibration);
 }
 
 void check_clock(const CheckInput& input, Findings& out) {
@@ -161,12 +183,13 @@ void check_clock(const CheckInput& input, Findings& out) {
   if (agrees || !known || std::abs(to_seconds(*s.imu.begin - visual->first)) > kTogether_s * std::max(1.0, *known))
     return;
   const bool unit = *known > 10.0 || *known < 0.1;
-  out.imu_unusable(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
-                                                      : fmt::format(": its clock runs at {:.1f} times theirs", *known)),
-                   unit ? "write all stamps in one unit"
-                        : fmt::format("--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then mend "
-                                      "the driver",
-                                      *known));
+  out.error(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
+                                               : fmt::format(": its clock runs at {:.1f} times theirs", *known)),
+            unit ? "write all stamps in one unit"
+                 : fmt::format("--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then mend "
+                               "the driver",
+                               *known),
+            Unusable::Calibration);
 }
 
 /// True if gravity, which has a constant norm, is in the columns of the gyro and not in those of the accelerometer.
@@ -218,8 +241,8 @@ void check_gyro_unit(const CheckInput& input, Findings& out) {
                          compared ? "" : " (its unit is not checked against a camera)"));
 }
 
-constexpr Check kImuChecks[] = {check_imu_rate,        check_gate,    check_gaps,       check_clock,
-                                check_frozen_readings, check_columns, check_accel_unit, check_gyro_unit};
+constexpr Check kImuChecks[] = {check_imu_rate, check_gate,       check_gaps,      check_clock, check_frozen_readings,
+                                check_columns,  check_accel_unit, check_gyro_unit, check_noise};
 
 }  // namespace
 

@@ -107,8 +107,8 @@ DatasetInfo without_further_cameras(DatasetInfo info) {
 
 }  // namespace
 
-RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics)
-    : has_extrinsics_(has_extrinsics), collector_(without_further_cameras(info)) {
+RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics, std::optional<ImuNoise> noise)
+    : has_extrinsics_(has_extrinsics), noise_(noise), collector_(without_further_cameras(info)) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
     if (used.find(modality) == nullptr) continue;
     const RigCamera& camera = *used.find(modality);
@@ -194,7 +194,7 @@ void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& sta
   if ((events ? statistics.events : statistics.frames).count == 0)
     out.error(fmt::format("no {}: the mode needs them, and the recording has none", kind),
               fmt::format("record them, name their topic with --topic {}=NAME, or choose another --mode", kind));
-  if (camera.done && camera.contradiction_deg > 0.0 && !imu_unusable(out.list))
+  if (camera.done && camera.contradiction_deg > 0.0 && !is_unusable(Unusable::Calibration, out.list))
     out.error(fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
                           camera.given.name, camera.contradiction_deg),
               "check the rotation of T_B_C and its direction: `edged calib` shows both");
@@ -202,7 +202,7 @@ void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& sta
 }
 
 std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics, bool dropped_frames) const {
-  CheckInput input{statistics, true, {}, dropped_frames};
+  CheckInput input{statistics, true, {}, dropped_frames, accel_axes_.better(), noise_};
   for (const Camera& camera : cameras_) {
     if (camera.deferred) continue;
     input.cameras.push_back(
@@ -212,11 +212,6 @@ std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics, bool
   }
   Findings out{check_recording(input)};
   for (const Camera& camera : cameras_) check_camera(camera, statistics, out);
-  const bool gyro_agrees = std::ranges::any_of(
-      cameras_, [](const Camera& camera) { return agrees(camera.agreement) && !camera.agreement->mirrored; });
-  if (const auto better = accel_axes_.better(); better && gyro_agrees && !imu_unusable(out.list))
-    out.error("accelerometer: gravity does not turn in its axes as measured by the gyro",
-              fmt::format("give it the axes of the gyro: {} would fit", *better));
   std::erase_if(out.list, [](const Finding& f) { return f.severity < Severity::Warning; });
   return out.list;
 }

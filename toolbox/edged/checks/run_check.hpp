@@ -18,7 +18,8 @@ namespace edged {
 class RunCheck {
  public:
   /// used: the cameras of the run; the first of each kind is checked. has_extrinsics: their poses are calibrated.
-  RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics);
+  /// noise: as calibrated, if it is.
+  RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics, std::optional<ImuNoise> noise = {});
 
   /// To be called with each measurement before it is used. Those of other cameras are ignored.
   void add(const Measurement& measurement);
@@ -71,6 +72,7 @@ class RunCheck {
   std::vector<Finding> check(const RecordingStatistics& statistics, bool dropped_frames) const;
 
   bool has_extrinsics_;
+  std::optional<ImuNoise> noise_;
   RecordingCollector collector_;
   GyroIntegral gyro_;
   double rate_ = 0.0;  ///< running mean of the gyro rate [rad/s]

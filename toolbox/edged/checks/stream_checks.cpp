@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "edged/checks/check_groups.hpp"
+#include "edged/core/angles.hpp"
 
 namespace edged {
 namespace {
@@ -12,6 +13,11 @@ namespace {
 constexpr double kShortest_s = 1.0;     // a run needs this much to initialize
 constexpr double kMostHot = 0.02;       // share of the events
 constexpr double kMostLeftOut_s = 0.5;  // per end of the recording, not covered by all sensors
+
+constexpr const char* kTruthRemedy =
+    "leave the wrong poses out, as a gap is evaluated rightly; until then no estimate is judged by it";
+
+constexpr double kMostRepeated = 0.25;  // share of the frames
 
 std::string interval(const char* name, const StreamStatistics& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
@@ -108,6 +114,10 @@ void check_frames(const CheckInput& input, Findings& out) {
                          to_seconds(s.frames.longest.front().after)),
              input.dropped_frames ? "this run dropped frames, as it was too slow for them"
                                   : "corners are lost over long ones; look for an overloaded bus");
+  if (s.repeated_share > kMostRepeated)
+    out.warn(fmt::format("{:.0f} % of the frames repeat the image before them", 100 * s.repeated_share),
+             "the driver sends an image several times: leave the repeated ones out, whose stamps are wrong",
+             Unusable::Calibration);
   if (s.mean_brightness < 15.0)
     out.note(fmt::format("frames are dark: mean brightness {:.0f} of 255", s.mean_brightness),
              "expose longer, or rely on --mode events or fused");
@@ -152,6 +162,15 @@ void check_truth(const CheckInput& input, Findings& out) {
   if (*truth.begin > *s.imu.end || *truth.end < *s.imu.begin)
     out.warn("ground truth does not overlap: " + interval("truth", truth) + ", " + interval("IMU", s.imu),
              "its clock is another one: shift it before evaluating");
+  else if (s.truth->frozen > Duration(0))
+    out.warn(fmt::format("ground truth: the same pose for {:.3f} s from {:.3f} s on, in motion",
+                         to_seconds(s.truth->frozen), to_seconds(s.truth->frozen_since)),
+             kTruthRemedy, Unusable::Truth);
+  else if (s.truth->jumps > 0)
+    out.warn(fmt::format("ground truth: {} jumps, the first at {:.3f} s by {:.2f} m and {:.0f} deg", s.truth->jumps,
+                         to_seconds(s.truth->first_jump.t), s.truth->first_jump.length_m,
+                         s.truth->first_jump.angle_rad * kDegreesPerRadian),
+             kTruthRemedy, Unusable::Truth);
   else
     out.good(fmt::format("ground truth: {} poses, path {:.1f} m", truth.count, s.truth->path_m));
 }

@@ -14,8 +14,9 @@
 namespace edged {
 
 /// When the body rotates, gravity rotates in the opposite direction in the axes of the body. If this holds only after
-/// sign changes of accelerometer axes, these contradict the gyro. (Negating the third axis is equivalent to negating
-/// both others. Negating all three is not observable.) The unit of the gyro must be correct. Memory is bounded.
+/// sign changes or exchanges of accelerometer axes, these contradict the gyro. (Negating the third axis is equivalent
+/// to negating both others. Negating all three is not observable.) The unit of the gyro must be correct. Memory is
+/// bounded.
 class AccelAxes {
  public:
   AccelAxes();
@@ -36,8 +37,9 @@ class AccelAxes {
 
   void end_mean();
 
-  std::array<Eigen::Vector3d, 4> signs_;  ///< candidate signs of the axes; the first are the given ones
-  std::array<double, 4> errors_{};        ///< sum of squares, one for each signs [m^2/s^4]
+  std::array<Eigen::Matrix3d, 24> axes_;  ///< candidates, from the given ones; the first are those
+  std::array<double, 24> errors_{};       ///< sum of squares, one for each of them [m^2/s^4]
+  double unturned_ = 0.0;                 ///< the same if the specific force did not turn in the body
   std::size_t pairs_ = 0;
   std::optional<ImuSample> last_;
   Eigen::Quaterniond q_0_B_ = Eigen::Quaterniond::Identity();

@@ -37,5 +37,13 @@ TEST(AccelAxes, NamesThoseWithTheWrongSign) {
   EXPECT_EQ(said_of(Eigen::Vector3d(-1, -1, 1).asDiagonal()), "(-x, -y, z)");
 }
 
+TEST(AccelAxes, NamesThoseThatAreExchanged) {
+  Eigen::Matrix3d quarter;
+  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_EQ(said_of(quarter), "(y, -x, z)");
+  quarter << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  EXPECT_EQ(said_of(quarter), "(x, z, -y)");
+}
+
 }  // namespace
 }  // namespace edged

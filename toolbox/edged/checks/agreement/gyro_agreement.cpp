@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kFewestTurns = 30;
 constexpr Duration kShiftStep = std::chrono::milliseconds(4);  // step of the search, which is then refined
+constexpr Duration kFarthestShift = std::chrono::milliseconds(500);
 constexpr double kUnlike = 0.5;  // of the rotation unexplained: above it the gyro does not belong to the camera
 
 /// Rotations, each measured by the camera and by the gyro at one time shift [rad/s].
@@ -109,10 +110,11 @@ double overlap_of(std::span<const Turn> turns) {
 }
 
 /// The shift of the grid with the best fit of rotation and scale.
-std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected) {
+std::optional<Duration> best_shift(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected,
+                                   Duration most) {
   std::optional<Duration> best;
   double least = std::numeric_limits<double>::infinity();
-  for (Duration shift = expected - kMostShift; shift <= expected + kMostShift; shift += kShiftStep) {
+  for (Duration shift = expected - most; shift <= expected + most; shift += kShiftStep) {
     const Pairs pairs = pairs_at(turns, gyro, shift);
     if (pairs.camera.size() < kFewestTurns) continue;
     const double error = fit_turns(pairs).median_error;
@@ -168,12 +170,12 @@ double common_error_of(const GyroAgreement& agreement) {
   return std::hypot(kOfUnexplained * std::min(agreement.unexplained, 1.0), off_scale);
 }
 
-/// compare_with_gyro for a gyro with correct signs.
-std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const GyroIntegral& gyro,
-                                              Duration expected) {
+/// compare_with_gyro for a gyro with correct signs, and time offsets up to `most` off.
+std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected,
+                                              Duration most = kMostShift) {
   constexpr int kRefinements = 5;
   if (turns.size() < kFewestTurns) return std::nullopt;
-  const auto coarse = best_shift(turns, gyro, expected);
+  const auto coarse = best_shift(turns, gyro, expected, most);
   if (!coarse) return std::nullopt;
   GyroAgreement agreement;
   agreement.time_offset = *coarse;
@@ -184,7 +186,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
     const TurnFit fit = fit_turns(pairs);
     const double step_s = refine_shift(pairs, fit, overlap_of(turns), agreement);
     agreement.time_offset = std::clamp(agreement.time_offset + duration_from_seconds(std::clamp(step_s, -0.02, 0.02)),
-                                       expected - kMostShift, expected + kMostShift);
+                                       expected - most, expected + most);
     agreement.turns = pairs.camera.size();
     agreement.R_B_C = fit.R;
     agreement.gyro_scale = fit.scale;
@@ -197,7 +199,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
   use_rays(turns, gyro, agreement);
   agreement.common_error = common_error_of(agreement);
   agreement.turning = turning_time(turns);
-  agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > kMostShift - kShiftStep;
+  agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > most - kShiftStep;
   return agreement;
 }
 
@@ -208,6 +210,9 @@ std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, cons
   // A rotation by 180 deg is equivalent to two negated axes: then the unexplained share must be small.
   constexpr double kDoubtful = 0.03, kFarBetter = 0.5;
   auto given = compare_as_given(turns, gyro, expected);
+  if (given && given->at_bound)
+    if (auto far = compare_as_given(turns, gyro, expected, kFarthestShift); far && !far->at_bound)
+      given = std::move(far);
   if (!given || given->unexplained < kDoubtful) return given;
   std::vector<Turn> negated(turns.begin(), turns.end());
   for (Turn& turn : negated) {

@@ -31,7 +31,8 @@ struct GyroAgreement {
   AccelAgreement accel;            ///< agreement of the accelerometer over the rotations compared
 };
 
-/// Time offsets within kMostShift of `expected` are tried. Nothing with too few rotations to compare.
+/// Time offsets within kMostShift of `expected` are tried, and farther ones if the best is at that bound. Nothing with
+/// too few rotations to compare.
 inline constexpr Duration kMostShift = std::chrono::milliseconds(100);
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected);

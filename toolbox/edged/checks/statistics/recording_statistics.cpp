@@ -7,22 +7,11 @@
 #include <utility>
 
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/core/path_length.hpp"
 
 namespace edged {
 namespace {
 
 constexpr Duration kEventSilence = std::chrono::milliseconds(100);
-
-TruthStatistics truth_statistics(const GroundTruth& truth) {
-  TruthStatistics statistics;
-  statistics.frame = truth.frame;
-  StreamCollector stream;
-  for (const StampedPose& pose : truth.trajectory) stream.add(pose.t, pose.t);
-  statistics.path_m = path_length(truth.trajectory, &StampedPose::T);
-  statistics.stream = stream.result();
-  return statistics;
-}
 
 /// A recording of that camera alone.
 DatasetInfo info_of(const RecordedCamera& camera, const DatasetInfo& of) {
@@ -90,6 +79,7 @@ void RecordingCollector::add(const Measurement& measurement, Detail detail, std:
     if (detail != Detail::All) return;
     brightness_sum_ += cv::mean(frame->image)[0];
     ++measured_frames_;
+    count_repeated(frame->image);
     watch_image(*frame);
   } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
     for (const ImuSample& passed : gate_.push(*sample)) imu_.add(passed.t, passed.t), imu_details_.add(passed);
@@ -126,6 +116,17 @@ void RecordingCollector::watch_image(const EventBatch& batch) {
   counted_from_ = now;
 }
 
+/// Images at rest, or of darkness, are alike for longer.
+void RecordingCollector::count_repeated(const cv::Mat& image) {
+  constexpr std::size_t kMostAlike = 5;
+  if (before_.size() == image.size() && cv::norm(image, before_, cv::NORM_INF) == 0.0) {
+    ++alike_;
+  } else if (const std::size_t alike = std::exchange(alike_, 0); alike <= kMostAlike) {
+    repeated_ += alike;
+  }
+  before_ = image;
+}
+
 RecordingStatistics RecordingCollector::so_far() const {
   RecordingStatistics statistics;
   statistics.info = info_;
@@ -138,7 +139,10 @@ RecordingStatistics RecordingCollector::so_far() const {
   statistics.image_size = image_size_;
   for (const RecordingCollector& camera : more_) statistics.more.push_back(camera.so_far());
   for (const auto& [name, collector] : external_) statistics.external[name] = collector.result();
-  if (measured_frames_ > 0) statistics.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
+  if (measured_frames_ > 0) {
+    statistics.mean_brightness = brightness_sum_ / static_cast<double>(measured_frames_);
+    statistics.repeated_share = static_cast<double>(repeated_) / static_cast<double>(measured_frames_);
+  }
   return statistics;
 }
 

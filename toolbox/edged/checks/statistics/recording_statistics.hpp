@@ -16,16 +16,11 @@
 #include "edged/checks/statistics/external_statistics.hpp"
 #include "edged/checks/statistics/imu_statistics.hpp"
 #include "edged/checks/statistics/stream_statistics.hpp"
+#include "edged/checks/statistics/truth_statistics.hpp"
 #include "edged/dataset.hpp"
 #include "edged/imu/imu_gate.hpp"
 
 namespace edged {
-
-struct TruthStatistics {
-  StreamStatistics stream;
-  std::string frame;    ///< whose pose it is
-  double path_m = 0.0;  ///< length of the path
-};
 
 struct RecordingStatistics {
   DatasetInfo info;
@@ -35,6 +30,7 @@ struct RecordingStatistics {
   ImuFaultRecords imu_faults{};
   cv::Size image_size;           ///< size of the first image
   double mean_brightness = 0.0;  ///< mean over all images, 0 to 255
+  double repeated_share = 0.0;   ///< of the images: those equal to the one before, a few times in a row
   ExternalStatisticsByName external;
   std::optional<TruthStatistics> truth;
   std::map<std::string, std::size_t> repairs;
@@ -73,6 +69,7 @@ class RecordingCollector {
  private:
   void watch_image(const Frame& frame);
   void watch_image(const EventBatch& batch);
+  void count_repeated(const cv::Mat& image);
 
   DatasetInfo info_;
   StreamCollector events_, frames_, imu_;
@@ -83,8 +80,10 @@ class RecordingCollector {
   std::map<std::string, ExternalCollector> external_;
   cv::Size image_size_;
   double brightness_sum_ = 0.0;
-  std::size_t measured_frames_ = 0;  ///< in that sum
-  cv::Mat compared_;                 ///< the frame that later ones are compared with
+  std::size_t measured_frames_ = 0;       ///< in that sum
+  cv::Mat before_;                        ///< the previous image
+  std::size_t alike_ = 0, repeated_ = 0;  ///< images like it since it changed; of all short repetitions
+  cv::Mat compared_;                      ///< the frame that later ones are compared with
   Timestamp compared_at_, counted_from_;
   std::size_t counted_ = 0;  ///< events since that frame
 };

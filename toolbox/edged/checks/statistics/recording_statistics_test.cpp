@@ -57,6 +57,18 @@ TEST(EventCollector, FindsHotPixelsRatesAndExtent) {
   EXPECT_NEAR(statistics.positive_share, (15'000.0 + 5001) / 25'001, 1e-9);
 }
 
+TEST(RecordingCollector, CountsImagesThatAreSentSeveralTimesAndNoneAtRest) {
+  const auto share = [](int times, int rest) {
+    RecordingCollector collector({});
+    for (int i = 0; i < 60 + rest; ++i)
+      collector.add(Frame{at(0.03 * i), "cam", cv::Mat(24, 32, CV_8UC1, cv::Scalar(i < 60 ? 2 * (i / times) : 200))});
+    return collector.so_far().repeated_share;
+  };
+  EXPECT_EQ(share(1, 0), 0.0);
+  EXPECT_EQ(share(1, 100), 0.0);
+  EXPECT_NEAR(share(3, 0), 2.0 / 3, 0.05);
+}
+
 TEST(ImuCollector, EstimatesNoiseAtRestOfWhiteNoise) {
   constexpr double kGyro = 2e-3, kAccel = 3e-2, kRate = 500;  // densities
   std::mt19937_64 random(1);
