@@ -38,7 +38,7 @@ class CheckRun {
   CheckRun(Source& source, const Rig& begin, Mode mode, bool quiet)
       : source_(source),
         check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics,
-               noise_of(source.calibration)),
+               source.calibration.known_noise()),
         odometry_(begin, source.calibration.imu, mode, config_, {kInOrder}),
         status_(quiet),
         rig_(odometry_.rig()),

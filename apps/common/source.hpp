@@ -41,11 +41,6 @@ struct SourceOptions {
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
 
-/// The noise of the IMU, where the calibration has it.
-inline std::optional<ImuNoise> noise_of(const Calibration& calibration) {
-  return calibration.has_imu_noise ? std::optional(calibration.imu) : std::nullopt;
-}
-
 /// The ground truth of a recording. A run continues without it if it is not readable.
 struct OwnTruth {
   std::optional<GroundTruth> truth;

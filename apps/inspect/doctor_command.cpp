@@ -14,6 +14,8 @@
 #include "common/log.hpp"
 #include "edged/checks/agreement/accel_axes.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
+#include "edged/checks/agreement/lens_agreement.hpp"
+#include "edged/checks/agreement/stereo_agreement.hpp"
 #include "edged/checks/checks.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
@@ -48,6 +50,15 @@ std::vector<CheckedCamera> cameras_to_check(const Recording& recording) {
   return cameras;
 }
 
+std::vector<RigCamera> as_recorded(const std::vector<CheckedCamera>& cameras) {
+  std::vector<RigCamera> named;
+  for (const CheckedCamera& checked : cameras) {
+    named.push_back(checked.camera);
+    named.back().name = checked.recorded;
+  }
+  return named;
+}
+
 /// Warnings while reading are findings, too: the summary contains everything that is printed.
 void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
   for (std::string& line : lines) findings.push_back({Severity::Warning, std::move(line), ""});
@@ -75,9 +86,11 @@ int run_doctor(const DoctorOptions& options) {
   ExternalCheck external;
   const std::vector<CheckedCamera> cameras = cameras_to_check(recording);
   for (const CheckedCamera& checked : cameras) visual.emplace_back(checked.camera);
+  StereoAgreement stereo(as_recorded(cameras));
   const SurveyRun read = survey_recording(*recording.dataset, options.quiet, [&](const Measurement& measurement) {
     if (const auto* sample = std::get_if<ImuSample>(&measurement)) gyro.add(*sample), axes.add(*sample);
     if (const auto* sample = std::get_if<ExternalSample>(&measurement)) external.add(*sample);
+    stereo.add(measurement);
     for (std::size_t i = 0; i < cameras.size(); ++i)
       if (const std::string* camera = camera_of(measurement); camera && *camera == cameras[i].recorded)
         visual[i].add(measurement);
@@ -91,9 +104,12 @@ int run_doctor(const DoctorOptions& options) {
          compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
          other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio()),
          least_turning(cameras[i].camera.modality)});
-  std::vector<Finding> findings =
-      check_recording({read.survey, recording.calibration.has_value(), std::move(checks), false, axes.better(),
-                       recording.calibration ? noise_of(*recording.calibration) : std::nullopt});
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    if (const auto& found = checks[i].agreement)
+      checks[i].lens = better_lens(cameras[i].camera, visual[i].turns(), gyro, found->unexplained);
+  std::vector<Finding> findings = check_recording(
+      {read.survey, recording.calibration.has_value(), std::move(checks), false, axes.better(),
+       recording.calibration ? recording.calibration->known_noise() : std::nullopt, stereo.exchanged()});
   external.judge(gyro, read.survey.external, findings);
   if (read.survey.events.count + read.survey.frames.count == 0)
     if (const auto start_s = cameras_start_after_s(options.source)) findings = {cameras_start_later(*start_s)};

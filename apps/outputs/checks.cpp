@@ -60,7 +60,7 @@ class RunChecks : public RunObserver {
  public:
   explicit RunChecks(RunContext& run)
       : run_(run),
-        check_(run.info(), run.used, run.source.calibration.has_extrinsics, noise_of(run.source.calibration)) {}
+        check_(run.info(), run.used, run.source.calibration.has_extrinsics, run.source.calibration.known_noise()) {}
 
   void on_measurement(const Measurement& measurement) override {
     const auto timer = run_.timings.measure_often("check");

@@ -21,8 +21,8 @@ class PyRunCheck {
  public:
   PyRunCheck(const PyRecording& recording, PyOdometry& odometry)
       : dataset_(*recording.dataset),
-        check_(dataset_.info(), odometry.odometry.rig(),
-               recording.calibration && recording.calibration->has_extrinsics) {}
+        check_(dataset_.info(), odometry.odometry.rig(), recording.calibration && recording.calibration->has_extrinsics,
+               recording.calibration ? recording.calibration->known_noise() : std::nullopt) {}
 
   void add(const PyMeasurement& measurement) {
     check_.add(measurement.value);

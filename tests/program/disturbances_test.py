@@ -121,6 +121,16 @@ def calibration(pattern, change):
     return {"calibration.yaml": lambda lines: [changed("".join(lines))]}
 
 
+def half(focal_length):
+    return focal_length / 2
+
+
+def exchanged(one, other):
+    """Each camera has the images of the other."""
+    return {f"{name}.txt": lambda lines, to=to: [re.sub(r"images2?/", f"{to}/", line) for line in lines]
+            for name, to in ((one, other), (other, one))}
+
+
 def events(change):
     """Their pixels."""
     def changed(lines):
@@ -135,6 +145,7 @@ def repeats(which, seconds):
     return rf"IMU samples that repeat a reading: {which} for ({lengths}) s from {{at}}\d+ s"
 
 
+LENS, MOUNTING = "it turns like the gyro only through another lens:", "rotation|mounted|off the calibration"
 ONE_AT = r"the first at {at}\d+ s"
 ROWS = {
     "clean": Row({}, "none", run=0),
@@ -163,6 +174,12 @@ ROWS = {
                            r"gyro: calibrated noise of 0\.12 .* 0\.0001\d* at rest", "density", doctor=3, run=5, never="scale"),
     "noise_too_small": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: n / 1000), "warning",
                            r"accelerometer: calibrated noise of 4e-06 .* 0\.00\d* at rest", "density", run=0),
+    "focal_length_halved": Row(calibration(r"(intrinsics: \[)([\d.]+, [\d.]+)", half), "error", f"camera frames: {LENS} a focal length near 199 px",
+                               "calibration of this lens", doctor=3, run=5, never=MOUNTING),
+    "focal_length_doubled": Row(calibration(r"(intrinsics: \[)([\d.]+, [\d.]+)", lambda n: 2 * n), "error", f"camera frames: {LENS} a focal length near 199 px",
+                                "calibration of this lens", doctor=3, run=5, never=MOUNTING),
+    "radtan_as_equidistant": Row({"calibration.yaml": lambda lines: ["".join(lines).replace("radtan", "equidistant").replace(", 0]\n    T", "]\n    T")]},
+                                 "error", f"camera frames: {LENS} its coefficients fit as radtan", "calibration of this lens", doctor=3, never=MOUNTING),
     "images_thrice": Row({"images.txt": lambda lines: [f"{float(t) + k:.6f} {name}\n" for t, name in map(str.split, lines)
                                                        for k in (0, 0.01, 0.02)]}, "warning", r"6\d % of the frames repeat the image before", "leave the repeated ones out", run=0),
     "truth_frozen": Row(truth(frozen), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0, never="covariance"),
@@ -179,7 +196,14 @@ ROWS = {
 }
 
 
-class Disturbances(WithFlight):
+ROWS_OF_TWO = {
+    "two_clean": Row({}, "none", run=0),
+    "two_exchanged": Row(exchanged("images", "images2"), "error", "cameras frames and frames2: their images match only as if exchanged", "exchange their topics", doctor=3, run=5,
+                         never="rig|differs|covariance"),
+}
+
+
+class Disturbed(WithFlight):
     SIMULATION = ("--duration", 6, "--seed", 2)
 
     def disturbed(self, row):
@@ -189,7 +213,7 @@ class Disturbances(WithFlight):
         for file in self.flight.iterdir():
             if file.name in row.changes:
                 (copy / file.name).write_text("".join(row.changes[file.name](file.read_text().splitlines(True))))
-            elif file.name != "events.txt":
+            elif not file.name.startswith("events"):
                 os.symlink(file, copy / file.name)
         return copy
 
@@ -216,8 +240,21 @@ class Disturbances(WithFlight):
                 self.assertEqual(json.loads(result.stdout)["trusted"], row.run == 0)
 
 
-for name, of_table in ROWS.items():
-    setattr(Disturbances, f"test_{name}", lambda self, row=of_table: self.check(row))
+class Disturbances(Disturbed):
+    pass
+
+
+class DisturbancesOfTwoCameras(Disturbed):
+    SIMULATION = (*Disturbed.SIMULATION, "--baseline", 0.1)
+
+
+def add_tests(of_class, rows):
+    for name, of_table in rows.items():
+        setattr(of_class, f"test_{name}", lambda self, row=of_table: self.check(row))
+
+
+add_tests(Disturbances, ROWS)
+add_tests(DisturbancesOfTwoCameras, ROWS_OF_TWO)
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

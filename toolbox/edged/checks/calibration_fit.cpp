@@ -56,10 +56,13 @@ bool is_about(const Finding& finding, const CalibrationFound& c) {
 
 CameraFit judge_camera(const CalibrationFound& c, const std::vector<Finding>& findings, const std::string& missing) {
   const auto said = std::ranges::find_if(findings, [&c](const Finding& f) { return is_about(f, c); });
+  const auto unusable = std::ranges::find(findings, Unusable::Calibration, &Finding::unusable);
+  const bool comparable = unusable == findings.end();
   const Offset rotation = rotation_of(c), clock = clock_of(c);
-  if (is_off(c)) return {c, Fit::DoesNotFit, contradiction(c, rotation, clock)};
+  if (comparable && is_off(c)) return {c, Fit::DoesNotFit, contradiction(c, rotation, clock)};
   if (said != findings.end())
     return {c, Fit::DoesNotFit, fmt::format("{}; {}", said->text.substr(said->text.find(": ") + 2), said->remedy)};
+  if (!comparable) return {c, Fit::CannotBeTold, fmt::format("{}; {}", unusable->text, unusable->remedy)};
   if (!c.estimated())
     return {c, Fit::CannotBeTold,
             missing.empty() ? "there was no estimate" : "no estimate, as it waited for " + missing};
@@ -94,10 +97,11 @@ CalibrationFit judge_fit(const std::vector<CalibrationFound>& found, std::vector
     all.fit = Fit::DoesNotFit;
     all.why = "see " + wrong;
   } else if (!unknown.empty()) {
-    all.why = fmt::format(
-        "see {}; move and turn the sensor about all axes before a scene with texture, or take more or another part: "
-        "--duration, --start",
-        unknown);
+    all.why = "see " + unknown;
+    if (!is_unusable(Unusable::Calibration, findings))
+      all.why +=
+          "; move and turn the sensor about all axes before a scene with texture, or take more or another part: "
+          "--duration, --start";
   } else {
     all.fit = Fit::Fits;
     all.why = "nothing in this recording contradicts it";

@@ -18,8 +18,8 @@ struct CorrectionFound {
   double off = 0.0, sigma = 0.0;
   double prior = 0.0;  ///< sigma of the given number; 0: it is no finding of its own
 
-  /// Beyond three sigma of what is given and of the estimate.
-  bool beyond() const { return prior > 0.0 && std::abs(off) > 3.0 * std::hypot(prior, sigma); }
+  /// Beyond so many sigmas of what is given and of the estimate.
+  bool beyond(double sigmas = 3.0) const { return prior > 0.0 && std::abs(off) > sigmas * std::hypot(prior, sigma); }
 };
 
 /// The estimated error of a camera's calibration.

@@ -71,5 +71,14 @@ TEST(CalibFit, FindingsCountAgainstTheirCameraOrAgainstAll) {
   EXPECT_EQ(judge_fit({found(0.1, 0.1)}, {{Severity::Warning, "IMU at 50 Hz", "record faster"}}, "").fit, Fit::Fits);
 }
 
+TEST(CalibFit, NoEstimateOfAnUnusableRecordingIsJudged) {
+  const std::vector<Finding> repeated{
+      {Severity::Warning, "67 % of the frames repeat", "leave them out", Unusable::Calibration}};
+  const CalibrationFit fit = judge_fit({found(3.0, 10.0)}, repeated, "");
+  EXPECT_EQ(fit.fit, Fit::CannotBeTold);
+  EXPECT_EQ(fit.cameras.at(0).why, "67 % of the frames repeat; leave them out");
+  EXPECT_EQ(fit.why, "see events");
+}
+
 }  // namespace
 }  // namespace edged

@@ -23,6 +23,7 @@ struct CameraCheck {
   std::optional<GyroAgreement> agreement;  ///< nothing without enough rotations to compare
   std::optional<ClockRate> clock = {};     ///< if the IMU clock runs at another rate than the camera clock
   Duration least_turning{0};               ///< a contradiction in a shorter turning_time() does not count
+  std::optional<std::string> lens = {};    ///< better_lens()
 
   /// True if the gyro explains enough of the rotation for the other results to be reliable.
   bool sure() const { return agreement && agreement->unexplained < 0.5; }
@@ -38,6 +39,7 @@ struct CheckInput {
   bool dropped_frames = false;                 ///< by the run itself, which was too slow for them
   std::optional<std::string> accel_axes = {};  ///< AccelAxes::better()
   std::optional<ImuNoise> noise = {};          ///< as calibrated
+  std::vector<std::string> exchanged = {};     ///< StereoAgreement::exchanged()
 };
 
 /// The remedy for a camera whose inverse transform fits.

@@ -81,13 +81,20 @@ TEST(Checks, NamesATruthThatContradictsItselfAndItsTime) {
   EXPECT_THAT(remedy_of(s, {}, Warning, "the same pose for 1.000 s from 2.000 s on"), HasSubstr("leave"));
 }
 
-TEST(Checks, NamesRepeatedImagesAndNoTimeOffset) {
+TEST(Checks, NamesACauseAndNotTheTimeOffsetThatFollows) {
   RecordingStatistics s = healthy();
-  CameraCheck check = agreeing();
-  check.agreement->time_offset = std::chrono::milliseconds(12);
+  CheckInput input{s, true, {agreeing()}};
+  input.cameras[0].agreement->time_offset = std::chrono::milliseconds(12);
+  const auto remedy = [&](Severity of, const char* text) { return remedy_of(check_recording(input), of, text); };
+  EXPECT_NE(remedy(Warning, "t_imu"), "NO SUCH FINDING");
+  input.cameras[0].lens = "a focal length near 200 px fits";
+  EXPECT_THAT(remedy(Error, "another lens: a focal length near 200 px fits"), HasSubstr("calibration of this lens"));
+  EXPECT_EQ(remedy(Warning, "t_imu"), "NO SUCH FINDING");
   s.repeated_share = 0.67;
-  EXPECT_THAT(remedy_of(s, {check}, Warning, "67 % of the frames repeat the image before"), HasSubstr("driver"));
-  EXPECT_EQ(remedy_of(s, {check}, Warning, "t_imu"), "NO SUCH FINDING");
+  EXPECT_THAT(remedy(Warning, "67 % of the frames repeat the image before"), HasSubstr("driver"));
+  s.repeated_share = 0.0, input.exchanged = {"left and right"};
+  EXPECT_THAT(remedy(Error, "cameras left and right: their images match only"), HasSubstr("exchange"));
+  EXPECT_EQ(remedy(Error, "another lens"), "NO SUCH FINDING");
 }
 
 TEST(Checks, NameFramesThatTheRunDroppedAsItsOwn) {

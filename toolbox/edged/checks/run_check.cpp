@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "edged/camera/field_of_view.hpp"
+#include "edged/checks/agreement/lens_agreement.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/core/statistics.hpp"
@@ -108,7 +109,7 @@ DatasetInfo without_further_cameras(DatasetInfo info) {
 }  // namespace
 
 RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics, std::optional<ImuNoise> noise)
-    : has_extrinsics_(has_extrinsics), noise_(noise), collector_(without_further_cameras(info)) {
+    : has_extrinsics_(has_extrinsics), noise_(noise), collector_(without_further_cameras(info)), stereo_(used.cameras) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
     if (used.find(modality) == nullptr) continue;
     const RigCamera& camera = *used.find(modality);
@@ -120,6 +121,7 @@ RunCheck::RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics
 }
 
 void RunCheck::add(const Measurement& measurement) {
+  stereo_.add(measurement);
   const std::string* name = camera_of(measurement);
   if (name && std::ranges::none_of(cameras_, [&](const Camera& camera) { return camera.given.name == *name; })) return;
   using Detail = RecordingCollector::Detail;
@@ -183,8 +185,9 @@ void RunCheck::compare(Camera& camera) {
   const std::vector<Turn>& turns = camera.visual.turns();
   camera.agreement = compare_with_gyro(turns, gyro_, camera.given.time_offset);
   const bool known = agrees(camera.agreement);
+  if (camera.agreement) camera.lens = better_lens(camera.given, turns, gyro_, camera.agreement->unexplained);
   camera.contradiction_deg =
-      camera.agreement && !known ? grossly_off_deg(turns, gyro_, camera.given, *camera.agreement) : 0.0;
+      camera.agreement && !known && !camera.lens ? grossly_off_deg(turns, gyro_, camera.given, *camera.agreement) : 0.0;
   camera.done = camera.turning >= kEnough || (camera.agreement && confirms(*camera.agreement, camera.given));
 }
 
@@ -202,13 +205,15 @@ void RunCheck::check_camera(const Camera& camera, const RecordingStatistics& sta
 }
 
 std::vector<Finding> RunCheck::check(const RecordingStatistics& statistics, bool dropped_frames) const {
-  CheckInput input{statistics, true, {}, dropped_frames, accel_axes_.better(), noise_};
+  CheckInput input{statistics, true, {}, dropped_frames, accel_axes_.better(), noise_, stereo_.exchanged()};
   for (const Camera& camera : cameras_) {
     if (camera.deferred) continue;
     input.cameras.push_back(
         {camera.given, has_extrinsics_, std::nullopt,
          other_clock_rate(camera.visual.turns(), gyro_, camera.given.time_offset, statistics.imu_span_ratio())});
-    if (camera.done && camera.agreement) input.cameras.back().agreement = inflated(*camera.agreement, camera.given);
+    if (!camera.done || !camera.agreement) continue;
+    input.cameras.back().agreement = inflated(*camera.agreement, camera.given);
+    input.cameras.back().lens = camera.lens;
   }
   Findings out{check_recording(input)};
   for (const Camera& camera : cameras_) check_camera(camera, statistics, out);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edged/checks/agreement/accel_axes.hpp"
+#include "edged/checks/agreement/stereo_agreement.hpp"
 #include "edged/checks/checks.hpp"
 #include "edged/dataset.hpp"
 
@@ -49,6 +50,7 @@ class RunCheck {
     /// undetermined.
     double contradiction_deg = 0.0;
     std::optional<GyroAgreement> agreement = std::nullopt;
+    std::optional<std::string> lens = std::nullopt;  ///< better_lens()
   };
 
   /// The stamps of one kind of sensor.
@@ -77,6 +79,7 @@ class RunCheck {
   GyroIntegral gyro_;
   double rate_ = 0.0;  ///< running mean of the gyro rate [rad/s]
   AccelAxes accel_axes_;
+  StereoAgreement stereo_;
   std::vector<Camera> cameras_;
   StreamSpan imu_, visual_;
   EventThinning thinning_;

@@ -24,6 +24,8 @@ struct Calibration {
   std::vector<std::string> warnings;  ///< what seems wrong, each one line
   /// Names of cameras, each with the ROS topic that the file names (Kalibr's rostopic); not all need have one.
   std::map<std::string, std::string> topics = {};
+
+  std::optional<ImuNoise> known_noise() const { return has_imu_noise ? std::optional(imu) : std::nullopt; }
 };
 
 /// What the pixels behind a lens give: those of a DAVIS give both.
