@@ -1,22 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a plain event file: its form found, then read through in every unit that the first byte may choose.
-#include <spdlog/spdlog.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstdlib>
-
-#include "edged/core/check.hpp"
 #include "edged/io/text/event_csv.hpp"
+#include "fuzz_support.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edged;
-  spdlog::set_level(spdlog::level::off);
   if (size < 1) return 0;
-  static const int file = memfd_create("events", 0);
-  if (ftruncate(file, 0) != 0 || pwrite(file, data + 1, size - 1, 0) != static_cast<ssize_t>(size - 1)) std::abort();
-  const std::string name = "/proc/self/fd/" + std::to_string(file);
+  const std::string name = file_of(as_text({data + 1, size - 1}));
   constexpr TimeUnit kUnits[] = {TimeUnit::Nanoseconds, TimeUnit::Microseconds, TimeUnit::Milliseconds,
                                  TimeUnit::Seconds};
   const cv::Size sensor(640, 480);
