@@ -5,6 +5,7 @@
 
 Environment: EDGED_BUILD, the build folder that is installed; CMAKE, CXX, PYTHON.
 """
+import json
 import os
 import pathlib
 import re
@@ -77,6 +78,15 @@ class Installed(unittest.TestCase):
         told = call(build / "fly", env=rigs)
         self.assertIn("Good, ", told)
         self.assertNotIn(" 0 rigs", told)
+        # The poses it gets are those of the program, by the errors to the last printed digit.
+        edged, flight, run = self.prefix / "bin" / "edged", self.folder / "seen", self.folder / "run"
+        call(edged, "simulate", "--duration", "3", "--out", flight, "--quiet", env=self.environment)
+        summary = json.loads(call(edged, "run", flight, "--mode", "frames", "--out", run, "--quiet", "--json", env=self.environment))
+        (run / "poses.tum").write_text(call(build / "poses", flight, env=rigs))
+        errors = [call(edged, "eval", flight / "groundtruth.txt", run / file, env=self.environment).partition("alignment")[2]
+                  for file in ("trajectory.tum", "poses.tum")]
+        self.assertEqual(errors[0].rpartition("next")[0], errors[1].rpartition("next")[0])
+        self.assertRegex(errors[1], rf"ATE position +{1e3 * summary['ate_rmse_m']:.4f} ")
 
     def test_the_tutorial_builds_and_runs_as_it_stands(self):
         text, project = TUTORIAL.read_text(), self.folder / "tutorial"
