@@ -50,8 +50,8 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
 
 void check_writable(const std::filesystem::path& file, const char* option, std::string_view kind_begins) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
-    throw InputError::format("{}: is a folder; give {} a file", file.string(), option);
+  if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
+    throw InputError::format("{}: is a folder, a pipe or a device; give {} a file", file.string(), option);
   std::string begin(kind_begins.size(), '\0');
   if (std::ifstream before(file, std::ios::binary); before.read(begin.data(), std::ssize(begin)).gcount() > 0)
     if (begin != kind_begins)

@@ -27,6 +27,16 @@ class Outputs(WithFlight):
         self.assert_refused(edged("show", self.flight, "--out", self.folder / "no" / "page.html", "--quiet"), "page.html", "--out")
         self.assert_refused(edged("run", self.flight, "--out", self.flight / "imu.txt" / "x", "--quiet"), "--out")
 
+    def test_an_output_replaces_neither_a_recording_nor_a_pipe(self):
+        bag, pipe, run = self.folder / "flight.bag", self.folder / "pipe", self.folder / "run"
+        bag.write_bytes(b"#ROSBAG V2.0\n")
+        os.mkfifo(pipe)
+        for place, reason in ((bag, "is there, and nothing that"), (pipe, "pipe")):
+            self.assert_refused(edged("run", self.flight, "--save-map", place, "--out", run, "--quiet"), str(place), reason, "--save-map")
+            self.assert_refused(edged("report", self.flight, "--out", place), str(place), reason, "--out")
+        self.assertFalse(run.exists())
+        self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
+
     def test_a_disk_that_is_full_at_one_output_costs_no_other(self):
         most = 150_000  # [bytes] of a file: album and report are larger, tables and trajectories are not
 
