@@ -111,6 +111,15 @@ class Recordings(WithFlight):
         self.assertEqual(result.stdout.count("\nwarning "), 1)
         self.assertIn("0 errors, 1 warning", result.stdout)
 
+    def test_late_copies_of_imu_samples_are_left_out_and_counted_however_many(self):
+        lines = (self.flight / "imu.txt").read_text().splitlines()
+        copies = [f"{float(t) - 0.005:.9f} {rest}" for t, rest in (line.split(" ", 1) for line in lines)]
+        result = edged("info", self.changed("imu.txt", lambda _: "\n".join(sum(zip(lines, copies), ())) + "\n"), "--json")
+        self.assertRegex(result.stderr, r"imu\.txt:2: stamp goes back in time")
+        found = json.loads(result.stdout)
+        self.assertEqual(found["imu"]["count"], len(lines))
+        self.assertEqual(found["repairs"]["imu: out of order, dropped"], len(lines))
+
     def test_the_doctor_tells_what_it_saw_of_a_recording_that_breaks_off(self):
         broken = self.changed("imu.txt", lambda text: text + "x y z\n" * 2000)
         result = edged("doctor", broken)

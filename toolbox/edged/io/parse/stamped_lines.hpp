@@ -77,7 +77,7 @@ class StampedLines {
       } else {
         const bool held_is_wrong =
             time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
-        damage_.bad(line_, "out of order, dropped", "stamp goes back in time");
+        damage_.mended(line_, "out of order, dropped", "stamp goes back in time");
         if (held_is_wrong) held_ = std::move(item);
       }
     }
