@@ -148,6 +148,7 @@ class Mcap final : public RecordSource {
 
   std::optional<Message> take_record(ByteReader& records) override {
     const auto op = records.number<std::uint8_t>();
+    if (op == kMcapNone) throw Damage("no record");
     ByteReader record(records.take(records.number<std::uint64_t>()));
     if (op == kMcapSchema) take_schema(record);
     if (op == kMcapChannel) take_channel(record);
