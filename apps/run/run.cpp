@@ -35,8 +35,10 @@ std::string config_text(const RunContext& run) {
 
 RunSummary begin_summary(const RunContext& run) {
   RunSummary summary;
-  summary.run = {run.info().name,     run.info().format,    mode_name(run.mode), run.frame.name(),
-                 run.folder.string(), run.archive.string(), run.source.seed,     run.config.odometry.map.localize_only};
+  const OdometryConfig& config = run.config.odometry;
+  summary.run = {run.info().name,  run.info().format,        mode_name(run.mode),
+                 run.frame.name(), run.folder.string(),      run.archive.string(),
+                 run.source.seed,  config.map.localize_only, config.status.max_scale_sigma};
   summary.resources = {run.meter.wall_s(), run.meter.cpu_s()};
   summary.statistics = run.statistics;
   summary.repairs = run.source.dataset->repairs();

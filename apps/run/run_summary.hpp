@@ -36,7 +36,8 @@ struct RunIdentity {
   std::string recording, format, mode, frame, folder;
   std::string archive;  ///< archive of the folder; "": not requested
   std::optional<int> seed;
-  bool localize_only = false;  ///< there are poses only while the body is localized in a loaded map
+  bool localize_only = false;    ///< there are poses only while the body is localized in a loaded map
+  double max_scale_sigma = 0.0;  ///< option of the status
 };
 
 struct Verdict {

@@ -12,7 +12,6 @@
 #include "edged/checks/checks.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
-#include "edged/options.hpp"
 
 namespace edged {
 namespace {
@@ -82,8 +81,8 @@ void judge_biases(const RunStatistics& run, std::vector<Finding>& out) {
 }
 
 /// A motion may be too gentle for an IMU to tell its size.
-void judge_scale(const RunStatistics& run, std::vector<Finding>& out) {
-  if (run.scale_sigma().value_or(0.0) > StatusConfig{}.max_scale_sigma)
+void judge_scale(const RunStatistics& run, double max_sigma, std::vector<Finding>& out) {
+  if (run.scale_sigma().value_or(0.0) > max_sigma)
     out.push_back({Severity::Error,
                    fmt::format("scale: known to {:.0f} %, as the motion is too gentle for this IMU: distances may be "
                                "off by that share",
@@ -229,7 +228,7 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
   if (ever_good) {
     judge_losses(statistics, s.run.localize_only, verdict.findings);
     if (!explained) {
-      judge_scale(statistics, verdict.findings);
+      judge_scale(statistics, s.run.max_scale_sigma, verdict.findings);
       judge_biases(statistics, verdict.findings);
     }
   }

@@ -9,6 +9,7 @@ namespace edged {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 /// Lost once, with a wrong bias, a rotation that the run has corrected, and an estimate that contradicts the truth.
@@ -84,6 +85,27 @@ TEST(Verdict, CallsALensCorrectedOnlyWhereARunCanCorrectIt) {
     judge_run(run, SourceOptions(), Ending::Complete);
     EXPECT_THAT(run.verdict.findings.front().text, StartsWith("camera frames: differs from the calibration by fx"));
     EXPECT_THAT(run.verdict.findings.front().remedy, StartsWith(remedy));
+  }
+}
+
+TEST(Verdict, TheScaleIsJudgedByTheOptionOfTheRun) {
+  Step step;
+  step.status = TrackingStatus::Good;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
+  step.covariance = {none, none, Eigen::Vector3d(0.05 * 0.05, 0.0, 0.0).asDiagonal()};
+  step.state.v_W = {0.2, 0.0, 0.0};
+  for (const double most : {0.2, 0.3}) {
+    RunSummary summary;
+    summary.run.max_scale_sigma = most;
+    for (int i = 0; i < 40; ++i) {
+      step.t = timestamp_from_seconds(0.1 * i);
+      summary.statistics.add(step);
+    }
+    judge_run(summary, {}, Ending::Complete);
+    EXPECT_EQ(summary.verdict.trusted, most > 0.25) << summary.verdict.text;
+    if (most < 0.25) {
+      EXPECT_THAT(summary.verdict.text, HasSubstr("scale: known to 25 %"));
+    }
   }
 }
 
