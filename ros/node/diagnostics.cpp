@@ -12,6 +12,13 @@
 namespace edged::node {
 namespace {
 
+/// Of all events that came, those that were left out as the node is too slow.
+std::string dropped_percent(const NodeHealth& health) {
+  std::size_t events = 0;
+  for (const auto& [topic, input] : health.inputs) events += input.events;
+  return fmt::format("{:.0f}", 100.0 * static_cast<double>(health.dropped.events) / static_cast<double>(events));
+}
+
 std::string summary(const NodeHealth& health) {
   std::string text = health.status ? to_string(*health.status) : "no packet yet";
   if (!health.reason.empty()) text += ": " + health.reason;
@@ -22,6 +29,8 @@ std::string summary(const NodeHealth& health) {
     if (!input.transport_trouble.empty()) text += fmt::format("; {}: {}", topic, input.transport_trouble);
   }
   if (health.newly_lost > 0) text += fmt::format("; {} measurements lost since the last report", health.newly_lost);
+  if (health.newly_lost > 0 && health.dropped.events > 0)
+    text += fmt::format("; too slow: {} % of all events dropped", dropped_percent(health));
   return text;
 }
 
@@ -104,6 +113,7 @@ Diagnosis diagnose(const NodeHealth& health) {
   if (health.age)
     values.emplace_back("newest step behind newest measurement [s]", fmt::format("{:.3f}", to_seconds(*health.age)));
   for (const Count& count : counts_of(health)) add_count(values, count.what, count.n);
+  if (health.dropped.events > 0) values.emplace_back("events left out, too slow [%]", dropped_percent(health));
   const auto& [intake, packets, use] = health.odometry;
   for (std::size_t i = 0; i < external_sensors().size(); ++i) {
     if (packets.external[i] == 0) continue;

@@ -34,6 +34,18 @@ TEST(Diagnostics, LevelFollowsTheStatusAndWhatWasNewlyLost) {
   EXPECT_THAT(diagnose(health).message, HasSubstr("Lost: blind"));
 }
 
+TEST(Diagnostics, ANodeThatIsTooSlowWarnsOfTheShareOfEventsThatItDrops) {
+  NodeHealth health = good();
+  health.inputs["/left/events"].events = 600;
+  health.inputs["/right/events"].events = 400;
+  health.dropped.events = health.newly_lost = 930;
+  const Diagnosis status = diagnose(health);
+  EXPECT_EQ(status.level, Diagnosis::Level::Warning);
+  EXPECT_THAT(status.message, HasSubstr("Good"));
+  EXPECT_THAT(status.message, HasSubstr("93 % of all events dropped"));
+  EXPECT_EQ(value_of(status, "events left out, too slow [%]"), "93");
+}
+
 TEST(Diagnostics, ASilentTopicIsNamed) {
   NodeHealth health = good();
   health.inputs["/dvs/events"];
