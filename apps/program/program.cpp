@@ -110,6 +110,12 @@ void end_output() {
     throw InputError::format("the output cannot be written: {}", std::generic_category().message(errno));
 }
 
+/// By the standard library or by OpenCV.
+bool lacks_memory(const std::exception& e) {
+  const auto* image = dynamic_cast<const cv::Exception*>(&e);
+  return dynamic_cast<const std::bad_alloc*>(&e) || (image && image->code == cv::Error::StsNoMem);
+}
+
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
@@ -137,6 +143,11 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const spdlog::spdlog_ex& e) {
     return tell(app, {kExitInput, "input", fmt::format("{}; is the disk full?", e.what())}, json);
   } catch (const std::exception& e) {
+    if (lacks_memory(e))
+      return tell(
+          app,
+          {kExitInput, "input", "there is too little memory: close other programs, or raise the limit (ulimit -v)"},
+          json);
     return tell(app, {kExitBug, "bug", fmt::format("a bug, please report it with this line: {}", e.what())}, json);
   }
 }

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that unpack to gigabytes cost neither memory nor a crash. Usage: EDGED=path/to/edged bombs_test.py"""
 import os
+import resource
 import sqlite3
 import struct
 import subprocess
@@ -69,6 +70,13 @@ class Bombs(WithFolder):
             bag.write_bytes(mcap_of_chunks(chunk_bytes, stated_bytes))
             self.assertLess(bag.stat().st_size, 700_000)
             self.assert_costs_little(bag)
+
+    def test_a_limit_that_is_too_low_is_told_in_one_line(self):
+        bag, limit = self.folder / "bag.mcap", (resource.RLIMIT_AS, (GIB // 4, GIB // 4))
+        bag.write_bytes(mcap_of_chunks(GIB // 4, GIB // 4))
+        result = subprocess.run([EDGED, "info", str(bag)], capture_output=True, text=True, check=False, timeout=300,
+                                preexec_fn=lambda: resource.setrlimit(*limit))
+        self.assert_refused(result, "there is too little memory", "ulimit -v")
 
     def test_texts_in_a_picture(self):
         recording = self.folder / "pictures"
