@@ -22,6 +22,7 @@ TEST(CovarianceSamples, AreThePosesWithAFreshCovarianceByStart) {
   step.covariance->position *= 2.0;
   add_at(4, step);
   add_at(5, lost);
+  step.covariance->position *= 2.0;
   add_at(6, step);
   step.status = TrackingStatus::Degraded;
   add_at(7, step);

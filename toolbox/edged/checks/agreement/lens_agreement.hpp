@@ -11,7 +11,8 @@
 
 namespace edged {
 
-/// What the lens would be, where that explains the turns far better than the calibration, which leaves `unexplained`.
+/// What the lens would be, where that explains the turns of frames far better than the calibration, which leaves
+/// `unexplained`.
 std::optional<std::string> better_lens(const RigCamera& camera, std::span<const Turn> turns, const GyroIntegral& gyro,
                                        double unexplained);
 
