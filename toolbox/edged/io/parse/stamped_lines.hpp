@@ -71,13 +71,16 @@ class StampedLines {
         held_ = std::move(item);
       } else if (time_of(*item) > time_of(*held_) || (kMayRepeat && time_of(*item) == time_of(*held_))) {
         next_ = std::exchange(held_, std::move(item));
+        went_back_ = false;
         return;
       } else if (time_of(*item) == time_of(*held_)) {
         damage_.mended(line_, "duplicate stamp", "same stamp as the line above; the first is kept");
       } else {
         const bool held_is_wrong =
             time_of(*held_) - time_of(*item) > kWrongStamp && (!taken_ || time_of(*item) > *taken_);
-        damage_.mended(line_, "out of order, dropped", "stamp goes back in time");
+        // Copies of older samples come between newer ones; lines that go back one after another are in another order.
+        const char *kind = "out of order, dropped", *detail = "stamp goes back in time";
+        std::exchange(went_back_, true) ? damage_.bad(line_, kind, detail) : damage_.mended(line_, kind, detail);
         if (held_is_wrong) held_ = std::move(item);
       }
     }
@@ -130,6 +133,7 @@ class StampedLines {
   bool damage_counted_ = false;
   bool parsed_ = false;  ///< at least one line was parsed
   bool ended_ = false;
+  bool went_back_ = false;  ///< the stamp of the line before
   StampJumpFilter<T> jump_filter_;
   std::deque<T> passed_;
   std::optional<T> next_, held_;
