@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """Poses of files, quaternions, and the walks that several benchmarks simulate."""
+import bisect
 import math
 
 WALK_S, WALK_MPS = 40.0, 0.6
@@ -28,6 +29,27 @@ def turned(q, v):
 
 def minus(a, b):
     return [x - y for x, y in zip(a, b)]
+
+
+def errors_since(folder, at):
+    """(time [s], position error [m]) of a run once its last pose half a second before `at` is aligned with the truth; nothing
+    where there is none."""
+    estimate, truth = poses(folder / "trajectory.tum"), poses(folder / "groundtruth.tum")
+    times = [pose[0] for pose in truth]
+
+    def true_pose(t):
+        after = min(max(bisect.bisect_left(times, t), 1), len(truth) - 1)
+        (t0, p0, q0), (t1, p1, q1) = truth[after - 1], truth[after]
+        share = (t - t0) / (t1 - t0)
+        return [a + share * (b - a) for a, b in zip(p0, p1)], q0 if share < 0.5 else q1
+
+    before = [pose for pose in estimate if pose[0] < at - 0.5]
+    if not before:
+        return []
+    t0, p0, q0 = before[-1]
+    true_p0, true_q0 = true_pose(t0)
+    rotation = product(true_q0, inverse(q0))
+    return [(t, math.dist(turned(rotation, minus(p, p0)), minus(true_pose(t)[0], true_p0))) for t, p, _ in estimate]
 
 
 def looking(yaw, pitch, roll):

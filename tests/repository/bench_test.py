@@ -45,7 +45,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "sim_suite", "space", "speed", "starts",
+        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "silence", "sim_suite", "space", "speed", "starts",
                      "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
