@@ -66,7 +66,7 @@ ExternalCounters Localization::external_counters() const {
 }
 
 void Localization::begin_epoch() {
-  place_.end_estimate(in_place());
+  if (session_.estimator.initialized()) place_.end_estimate(in_place());
   session_ = new_session(session_.bias_prior, external_counters(), Timestamp::min());
   mapper_.begin_epoch();
   status_.set_lost("a clock was set back");

@@ -40,13 +40,15 @@ class PlaceUncertainty {
     position_ = std::hypot(std::hypot(position_, begin.position), position_sigma_, by_gap_);
     yaw_ = std::hypot(yaw_, begin.yaw);
     measured_ = measured_ && begin.measured && by_gap_ == 0.0;
+    ended_ = true;
     velocity_ = begin.velocity;
     acceleration_ = kGravity * begin.tilt;
     position_sigma_ = by_gap_ = 0.0;
     after_gap_ = false;
   }
-  /// Without an estimate.
+  /// Without an estimate. Before the first one there is no place to be uncertain of.
   void dead_reckon(const Preintegration& motion) {
+    if (!ended_) return;
     const auto variances = motion.covariance().diagonal();
     position_ = std::hypot(position_ + velocity_ * motion.dt(), std::sqrt(variances.segment<3>(6).maxCoeff()));
     velocity_ = std::hypot(velocity_ + acceleration_ * motion.dt(), std::sqrt(variances.segment<3>(3).maxCoeff()));
@@ -62,7 +64,7 @@ class PlaceUncertainty {
 
  private:
   double position_sigma_ = 0.0;  ///< of the estimate, before a gap
-  bool after_gap_ = false, measured_ = true;
+  bool after_gap_ = false, ended_ = false, measured_ = true;
   double by_gap_ = 0.0, position_ = 0.0, yaw_ = 0.0;
   double velocity_ = 0.0, acceleration_ = 0.0;
 };

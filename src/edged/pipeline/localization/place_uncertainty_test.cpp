@@ -56,6 +56,13 @@ TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized)
   EXPECT_EQ(place.position(), 0.0);
 }
 
+TEST(PlaceUncertainty, IsNoneBeforeTheFirstStart) {
+  PlaceUncertainty place;
+  for (int i = 0; i < 200; ++i) place.dead_reckon(motion(0.1, true));
+  EXPECT_EQ(place.position(), 0.0);
+  EXPECT_EQ(place.yaw(), 0.0);
+}
+
 TEST(PlaceUncertainty, TakesAShareOfGravityForAcceleration) {
   PlaceUncertainty place;
   place.end_estimate({.tilt = 0.01});
