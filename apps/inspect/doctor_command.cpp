@@ -98,15 +98,15 @@ int run_doctor(const DoctorOptions& options) {
   if (interrupt_signal() != 0) return exit_code_of_interrupt();
 
   std::vector<CameraCheck> checks;
-  for (std::size_t i = 0; i < cameras.size(); ++i)
-    checks.push_back(
-        {cameras[i].camera, recording.calibration->has_extrinsics,
-         compare_with_gyro(visual[i].turns(), gyro, cameras[i].camera.time_offset),
-         other_clock_rate(visual[i].turns(), gyro, cameras[i].camera.time_offset, read.survey.imu_span_ratio()),
-         least_turning(cameras[i].camera.modality)});
-  for (std::size_t i = 0; i < cameras.size(); ++i)
-    if (const auto& found = checks[i].agreement)
-      checks[i].lens = better_lens(cameras[i].camera, visual[i].turns(), gyro, found->unexplained);
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const RigCamera& camera = cameras[i].camera;
+    const std::vector<Turn>& turns = visual[i].turns();
+    checks.push_back({camera, recording.calibration->has_extrinsics, compare_with_gyro(turns, gyro, camera.time_offset),
+                      other_clock_rate(turns, gyro, camera.time_offset, read.survey.imu_span_ratio()),
+                      least_turning(camera.modality)});
+    if (const auto& found = checks.back().agreement)
+      checks.back().lens = better_lens(camera, turns, gyro, found->unexplained);
+  }
   std::vector<Finding> findings = check_recording(
       {read.survey, recording.calibration.has_value(), std::move(checks), false, axes.better(),
        recording.calibration ? recording.calibration->known_noise() : std::nullopt, stereo.exchanged()});

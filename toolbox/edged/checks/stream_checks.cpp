@@ -23,6 +23,13 @@ std::string interval(const char* name, const StreamStatistics& stream) {
   return fmt::format("{} {:.3f} to {:.3f} s", name, to_seconds(*stream.begin), to_seconds(*stream.end));
 }
 
+/// The longer of the times of the cameras before and after those of the IMU, if both are there [s].
+double beyond_imu_s(const RecordingStatistics& s) {
+  const auto cameras = s.cameras();
+  if (!cameras || s.imu.count == 0) return 0.0;
+  return to_seconds(std::max(*s.imu.begin - cameras->first, cameras->second - *s.imu.end));
+}
+
 /// The time that all present sensors cover.
 void check_overlap(const CheckInput& input, Findings& out) {
   const RecordingStatistics& s = input.recording;
@@ -38,14 +45,10 @@ void check_overlap(const CheckInput& input, Findings& out) {
   }
   if (streams < 2) return;
   const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
-  const auto seen = s.cameras();
-  const Duration before_imu = s.imu.count > 0 ? *s.imu.begin - seen->first : Duration(0);
-  const Duration after_imu = s.imu.count > 0 ? seen->second - *s.imu.end : Duration(0);
-  const double left_out = to_seconds(std::max({before_imu, after_imu, Duration(0)}));
   if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
               "stamp all sensors on one clock when recording: no run can mend whole seconds");
-  else if (common < std::max(0.9 * least, least - kMostLeftOut_s) || left_out > kMostLeftOut_s)
+  else if (common < std::max(0.9 * least, least - kMostLeftOut_s) || beyond_imu_s(s) > kMostLeftOut_s)
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "the time that only some of them cover is not used; check that all were recorded");
   else if (common < kShortest_s)

@@ -85,12 +85,12 @@ Preintegration Localization::predict(const std::vector<ImuSample>& imu) {
 LocalizationOutput Localization::process(Preintegration motion, const VisionOutput& seen,
                                          std::vector<ExternalSample> external) {
   const Timestamp t = motion.end();
-  if (session_.estimator.initialized() && body_.gap_s() > kPipelineTuning.max_gap_s) {
-    map_window();
-    if (body_.gap_s() > kPipelineTuning.longest_gap_s) return end_at_gap(motion, seen);
+  if (session_.estimator.initialized()) {
+    if (body_.gap_s() > kPipelineTuning.max_gap_s) map_window();
+    if (body_.gap_s() > kPipelineTuning.longest_gap_s ||
+        (body_.silent_s() > kPipelineTuning.longest_gap_s && !seen_by_frames(seen)))
+      return end_at_gap(motion, seen);
   }
-  if (session_.estimator.initialized() && body_.silent_s() > kPipelineTuning.longest_gap_s && !seen_by_frames(seen))
-    return end_at_gap(motion, seen);
   LocalizationOutput output;
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},

@@ -37,7 +37,10 @@ std::vector<Turn> seen_through(const CameraModel& lens, const CameraModel& given
       seen.back().rays.emplace_back(begin.back().homogeneous().normalized(), end.back().homogeneous().normalized());
     }
     const auto R = rotation_between(begin, end);
-    R ? void(seen.back().phi_C = so3::log(Eigen::Quaterniond(*R))) : seen.pop_back();
+    if (R)
+      seen.back().phi_C = so3::log(Eigen::Quaterniond(*R));
+    else
+      seen.pop_back();
   }
   return seen;
 }

@@ -20,7 +20,10 @@ constexpr int kFewestMatches = 30, kTimesMore = 3;
 StereoAgreement::StereoAgreement(std::span<const RigCamera> cameras) {
   for (const RigCamera& camera : cameras) {
     if (camera.modality != Modality::Frames) continue;
-    first_ ? others_.push_back({camera}) : void(first_ = camera);
+    if (first_)
+      others_.push_back({camera});
+    else
+      first_ = camera;
   }
 }
 
