@@ -82,6 +82,7 @@ double inflation(const Window& window, const EstimatorConfig& config) {
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
                      std::vector<IntrinsicsCorrection> intrinsics, const std::optional<BiasPrior>& biases)
     : config_(config),
+      calibrated_(noise),
       window_(rig, {0.0, 0.0}, config.depth_factor),
       standstill_(config.standstill, noise),
       external_(config.height, config.velocity),
@@ -106,7 +107,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   const bool new_depth = add_depth(input);
   window_.relinearise_intrinsics();
   predict_observations(window_);
-  optimize(result, config_.iterations);
+  optimize(result, input.motion.noise());
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
   result.marginalized_keyframes = slide();
@@ -283,8 +284,29 @@ bool Estimator::add_depth(const EstimatorInput& input) {
   return true;
 }
 
-void Estimator::optimize(EstimatorResult& result, int iterations) {
-  const bool usable = solve(window_, iterations).usable;
+/// While the IMU shakes, residuals that are too large mean that its slow noise is larger than its fast one shows. Then
+/// that holds for the whole window. Returns whether the solution is usable.
+bool Estimator::solve_window(const ImuNoise& in_use) {
+  bool usable = solve(window_, config_.iterations).usable;
+  if (in_use.accel_noise > calibrated_.accel_noise) {
+    for (int i = 0; i < kEstimatorTuning.noise_rounds && usable && raise_imu_noise(); ++i)
+      usable = solve(window_, config_.iterations).usable;
+  } else if (window_.imu_noise_scale() != 1.0) {
+    window_.set_imu_noise_scale(1.0);
+  }
+  return usable;
+}
+
+/// Adapts the IMU's noise to its residuals: at once to larger ones, slowly to smaller ones. Returns whether it rose.
+bool Estimator::raise_imu_noise() {
+  const double over = imu_strain(window_) / kEstimatorTuning.shaking_strain, before = window_.imu_noise_scale();
+  const double scale = before * (over > 1.0 ? over : std::pow(over, kEstimatorTuning.noise_gain));
+  window_.set_imu_noise_scale(std::clamp(scale, 1.0, kEstimatorTuning.max_imu_noise_scale));
+  return window_.imu_noise_scale() > before;
+}
+
+void Estimator::optimize(EstimatorResult& result, const ImuNoise& in_use) {
+  const bool usable = solve_window(in_use);
   result.plausible = usable && plausible(newest());
   const std::vector<FeatureId> outliers = remove_outliers(window_, config_.landmarks);
   result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());

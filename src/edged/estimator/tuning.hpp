@@ -110,6 +110,8 @@ struct InitializationTuning {
   double gauge_sigma_m = 1e-4, gauge_sigma_rad = 1e-4;  ///< hold position and yaw of the first state
   double zero_velocity_sigma = 0.01;                    ///< [m/s] of a body at rest
   double rest_gyro_bias_sigma = 0.005;                  ///< [rad/s] where the rest has measured the bias
+  Duration noise_measured = std::chrono::milliseconds(
+      900);  ///< of IMU before a start in a rest that shakes: the mean is as uncertain as that [022]
   double rest_accel_sigma = 0.03;      ///< [m/s^2] of the mean acceleration at rest: a calm IMU may still move a little
   double max_gravity_error = 1.0;      ///< [m/s^2] of that mean: beyond it the unit is wrong, ...
   double gravity_sigmas = 3.5;         ///< ... if vibration does not explain it
@@ -177,6 +179,9 @@ struct EstimatorTuning {
   /// Share of event_noise_inflation: all of it down to this share of the sigma of frames, none of it from the other on.
   double full_event_inflation = 1.0 / 2.0, no_event_inflation = 1.0 / 5.0;
   double max_imu_strain = 0.5;          ///< [sigma] above it the observations lose weight [023]
+  double shaking_strain = 0.35;         ///< [sigma] while the IMU shakes its noise rises to less, as is usual [022]
+  double max_imu_noise_scale = 10.0;    ///< of that rise, as that by corrections
+  int noise_rounds = 5;                 ///< solutions for it: with less weight the residuals grow
   double strain_gain = 0.25;            ///< a packet: exponent of the noise inflation by the strain
   double events_alone_inflation = 1.4;  ///< factor on reported sigmas: dynamic objects mislead events more easily [024]
   double gyro_saturation_noise = 6.0;   ///< times an observation's sigma [022]: images blur, features are tracked

@@ -72,7 +72,10 @@ ImuFactor::ImuFactor(StateId a, StateId b, const Preintegration& imu)
 
 std::shared_ptr<Factor> ImuFactor::without(const DroppedState& dropped) const {
   const bool into = blocks()[2].id == dropped.id;  // factor of the dropped state; it covers both
-  return into ? nullptr : std::make_shared<ImuFactor>(dropped.before, dropped.after, dropped.imu);
+  if (into) return nullptr;
+  auto joined = std::make_shared<ImuFactor>(dropped.before, dropped.after, dropped.imu);
+  joined->weight_ = weight_;
+  return joined;
 }
 
 bool ImuFactor::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {

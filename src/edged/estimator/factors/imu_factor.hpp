@@ -18,6 +18,8 @@ class ImuFactor final : public Factor {
  public:
   /// The preintegration must outlive the factor.
   ImuFactor(StateId a, StateId b, const Preintegration& imu);
+  /// The white noise is so many times that of the preintegration.
+  void set_noise_scale(double scale) { weight_ = 1.0 / scale; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   std::shared_ptr<Factor> without(const DroppedState& dropped) const override;
 
@@ -26,7 +28,7 @@ class ImuFactor final : public Factor {
   template <int Columns, int Options>
   Eigen::Matrix<double, 15, Columns, Options> whitened(const Eigen::Matrix<double, 15, Columns, Options>& M) const {
     Eigen::Matrix<double, 15, Columns, Options> white;
-    white.template topRows<9>() = whiten_motion_.lazyProduct(M.template topRows<9>());
+    white.template topRows<9>() = weight_ * whiten_motion_.lazyProduct(M.template topRows<9>());
     white.template bottomRows<6>() = whiten_biases_.asDiagonal() * M.template bottomRows<6>();
     return white;
   }
@@ -34,6 +36,7 @@ class ImuFactor final : public Factor {
   const Preintegration& imu_;
   Matrix9d whiten_motion_;
   Vector6d whiten_biases_;
+  double weight_ = 1.0;
 };
 
 }  // namespace edged

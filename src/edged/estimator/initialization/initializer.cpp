@@ -98,7 +98,9 @@ InitializationResult Initializer::add(const EstimatorInput& input, const Standst
                                       double most_scale_sigma, const OdomState* running) {
   noise_ = input.motion.noise();
   const bool new_view = buffer_view(input);
-  if (rest.still()) {
+  if (!since_) since_ = input.motion.begin();
+  const bool measured = input.t - *since_ >= kInitializationTuning.noise_measured;
+  if (rest.still() && (measured || !rest.vibrates())) {
     const double gravity = rest.mean_accel_B().norm();
     const double by_vibration = kInitializationTuning.gravity_sigmas * rest.mean_accel_sigma(rest.mean_duration_s());
     if (std::abs(gravity - kGravity) > kInitializationTuning.max_gravity_error + by_vibration) {

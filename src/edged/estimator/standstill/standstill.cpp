@@ -82,7 +82,6 @@ void StandstillDetector::judge_calm(const MotionSource& motion) {
   }
 }
 
-/// The IMU shakes more than at its calibration.
 bool StandstillDetector::vibrates() const { return mean_gyro_sigma(1.0) > 0.0 || mean_accel_sigma(1.0) > 0.0; }
 
 /// Once a rest has lasted for a while all that the IMU shows is noise.

@@ -54,6 +54,8 @@ class StandstillDetector {
   bool still_by_imu() const { return quiet_; }
   /// True if the image has been static for a while although the IMU is not calm, or has a gap.
   bool image_static() const { return image_static_; }
+  /// The IMU shakes more than at its calibration.
+  bool vibrates() const;
   /// The noise of the IMU during a rest that has lasted for a while.
   const std::optional<ImuNoise>& noise_at_rest() const { return noise_at_rest_; }
   /// Why it is no standstill, with numbers; empty at standstill.
@@ -78,7 +80,6 @@ class StandstillDetector {
   void judge_shaking(const Spread& spread, bool gap, const MotionSource& motion);
   void judge_calm(const MotionSource& motion);
   void measure_rest();
-  bool vibrates() const;
   void take_means(const Spread& spread);
   Spread spread_over(double window_s) const;
   double vibration(double ImuNoise::*density) const;

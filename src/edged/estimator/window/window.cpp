@@ -120,7 +120,11 @@ StateId Window::add_state(WindowState state, const std::vector<CameraObservation
   const bool first = states_.empty();
   const StateId before = first ? next_state_ : newest_id();
   const WindowState& added = states_.emplace(next_state_, std::move(state)).first->second;
-  if (!first) add(std::make_shared<ImuFactor>(before, next_state_, added.imu));
+  if (!first) {
+    auto imu = std::make_shared<ImuFactor>(before, next_state_, added.imu);
+    imu->set_noise_scale(imu_noise_scale_);
+    add(std::move(imu));
+  }
   if (!first && added.stationary) add(std::make_shared<StandstillFactor>(before, next_state_));
   for (const CameraObservations& view : observations) observe(view);
   return next_state_++;
@@ -232,6 +236,12 @@ void Window::rescale_noise(std::size_t camera, double factor) {
       if (image.camera == camera) observation.sigma *= factor;
     }
   }
+}
+
+void Window::set_imu_noise_scale(double scale) {
+  imu_noise_scale_ = scale;
+  for (const auto& factor : factors_)
+    if (auto* imu = dynamic_cast<ImuFactor*>(factor.get())) imu->set_noise_scale(scale);
 }
 
 void Window::add_soft_prior(LinearPrior prior) {

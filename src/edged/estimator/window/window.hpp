@@ -161,6 +161,9 @@ class Window {
 
   /// Sets the factor on the sigmas of the camera's future observations.
   void set_noise_scale(std::size_t camera, double scale) { cameras_.at(camera).noise_scale = scale; }
+  /// Factor on the white noise of all past and future IMU intervals.
+  double imu_noise_scale() const { return imu_noise_scale_; }
+  void set_imu_noise_scale(double scale);
   /// Multiplies the sigmas of all past and future observations of the camera.
   void rescale_noise(std::size_t camera, double factor);
   /// Starts to estimate calibrations, with priors at their present values. Not before scale is known: in slow motion a
@@ -216,6 +219,7 @@ class Window {
   std::vector<std::shared_ptr<Factor>> factors_;
   TrackNoise track_noise_;
   DepthFactorConfig depth_config_;
+  double imu_noise_scale_ = 1.0;
   StateId next_state_ = 0;
 };
 

@@ -83,6 +83,18 @@ TEST(Window, StrainsTheImuOnlyWhenAStateIsMovedAgainstIt) {
   EXPECT_GT(imu_strain(window), 2.0);
 }
 
+TEST(Window, ScalesTheNoiseOfAllImuIntervals) {
+  Tracked tracked, scaled({}, 3);
+  scaled.window.set_imu_noise_scale(4.0);
+  for (int i = 3; i < 6; ++i) {
+    WindowState later = tracked.window.states().at(static_cast<StateId>(i));
+    scaled.window.add_state(std::move(later));
+  }
+  for (Window* window : {&tracked.window, &scaled.window})
+    displace(*window, window->newest_id(), {0.0, 0.0, 0.0}, {0.05, 0.0, 0.0});
+  EXPECT_NEAR(imu_strain(scaled.window), imu_strain(tracked.window) / 4.0, 1e-3);
+}
+
 TEST(Window, HoldsStatesTogetherBetweenWhichTheBodyRested) {
   Tracked tracked;
   Window& window = tracked.window;
