@@ -126,7 +126,7 @@ def names(page):
 
 class Claims(unittest.TestCase):
     def test_wrong_names_are_found(self):
-        for name in ("frontend/tracker", "apps/run", "estimator.keyframes", "--localize-only", "Packetizer.*", "Window::linearisation_point"):
+        for name in ("frontend/tracker", "apps/run", "estimator.keyframes", "--localize-only", "Packetizer.*", "Window::drop_oldest"):
             self.assertTrue(exists(name), name)
         for name in ("frontend/trakker", "apps/runner/", "estimator.keyfrmes", "--localise-only", "Packetiser.*", "Window::lineaization_point"):
             self.assertFalse(exists(name), name)

@@ -7,7 +7,6 @@
 
 #include "edged/core/angles.hpp"
 #include "edged/estimator/test_world.hpp"
-#include "edged/estimator/tuning.hpp"
 
 namespace edged {
 namespace {
@@ -84,46 +83,6 @@ TEST(Estimator, BelievesCornersLessWhileTheGyroIsBeyondItsRange) {
   clipped.motion = Preintegration(samples, clipped.motion.bias_gyro(), clipped.motion.bias_accel(), world.noise());
   estimator.add(clipped);
   EXPECT_NEAR(mean_sigma(estimator.window()) / usual, 6.0, 1.0);
-}
-
-/// A packet of an IMU that is known to be so many times as noisy as calibrated.
-EstimatorInput shaking_packet(TestWorld& world, double t, double times) {
-  EstimatorInput input = world.packet(t, kPacket_s, std::lround(t / kPacket_s) % 4 == 0);
-  ImuNoise known = world.noise();
-  known.accel_noise *= times, known.gyro_noise *= times;
-  input.motion = Preintegration(input.motion.samples(), {0, 0, 0}, {0, 0, 0}, known);
-  return input;
-}
-
-TEST(Estimator, RaisesTheNoiseOfAnImuThatShakesUntilItExplainsTheResiduals) {
-  TestWorld world({.rest_s = 1.5, .pixel_noise = 0.2, .imu_noise = 50.0});
-  Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
-  double strain = 0.0, scale = 1.0;
-  for (double t = kPacket_s; t < 6.0; t += kPacket_s) {
-    strain = std::max(strain, estimator.add(shaking_packet(world, t, t < 1.5 ? 50.0 : 10.0)).imu_strain);
-    scale = std::max(scale, estimator.window().imu_noise_scale());
-  }
-  ASSERT_TRUE(estimator.initialized());
-  EXPECT_LT(strain, 0.5);
-  EXPECT_GT(scale, 2.0);
-}
-
-TEST(Estimator, LeavesTheNoiseOfACalmImu) {
-  TestWorld world({.rest_s = 1.0, .imu_noise = 5.0});
-  Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
-  for (int i = 1; i * kPacket_s < 4.0; ++i) {
-    estimator.add(world.packet(i * kPacket_s, kPacket_s, i % 4 == 0));
-    EXPECT_EQ(estimator.window().imu_noise_scale(), 1.0);
-  }
-}
-
-TEST(Estimator, StartsInARestThatShakesOnceItsNoiseIsMeasured) {
-  TestWorld world({.rest_s = 3.0, .pixel_noise = 0.2, .imu_noise = 10.0});
-  Estimator estimator(world.rig(), world.noise(), EstimatorConfig());
-  double t = kPacket_s;
-  for (; !estimator.initialized() && t < 3.0; t += kPacket_s) estimator.add(shaking_packet(world, t, 10.0));
-  EXPECT_TRUE(estimator.initialized());
-  EXPECT_GT(t, to_seconds(kInitializationTuning.noise_measured));
 }
 
 TEST(Estimator, StartsAtRestAndFollowsTheMotion) {

@@ -82,14 +82,8 @@ std::size_t entry_of(Index global, std::vector<Coupling>& couplings) {
 
 }  // namespace
 
-LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout, Linearisation at,
-                                     NormalEquations& equations)
-    : layout_(layout),
-      equations_(equations),
-      present_(window),
-      taken_(at == Linearisation::Present ? present_ : CameraPoses::at_first_estimates(window)),
-      at_present_(at == Linearisation::Present),
-      loss_(visual_loss()) {
+LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations)
+    : layout_(layout), equations_(equations), views_(window), loss_(visual_loss()) {
   constexpr Index kNowhere = -1;  // of a block that no term knows
   const auto place_of = [&](BlockKey key) {
     const auto found = layout.offset.find(key);
@@ -118,22 +112,18 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
   }
 }
 
-/// Residuals at the present values, Jacobians where they are taken; use(index of the residual, error, error before).
+/// use(index of the residual, error, error before)
 template <typename Use>
 void LandmarkEquations::linearise(const LandmarkTerm& term, const Use& use) const {
-  const CameraPoses &now = present_, &taken = taken_;
-  const std::size_t anchor = term.anchor.camera;
-  const AnchoredLandmark landmark(now.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
-  const AnchoredLandmark first(taken.at(anchor, term.anchor_place), term.point, *term.inverse_depth);
-  const LandmarkDerivatives derivatives(first);
+  const AnchoredLandmark landmark(views_.at(term.anchor.camera, term.anchor_place), term.point, *term.inverse_depth);
+  const LandmarkDerivatives derivatives(landmark);
   ObservationError error, before;
   bool defined = false, before_defined = false;
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
     const LandmarkResidual& at = term.residuals[i];
     before = error;
     before_defined = defined;
-    defined = derivatives.error(taken.at(at.seen.camera, at.place), at.point, error) &&
-              (at_present_ || landmark.error(now.at(at.seen.camera, at.place), at.point, error.e));
+    defined = derivatives.error(views_.at(at.seen.camera, at.place), at.point, error);
     if (defined && (before_defined || at.correlation == 0.0)) use(i, error, before);
   }
 }
@@ -144,10 +134,6 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
   const LandmarkResidual& at = term.residuals[residual];
   const bool correlated = at.correlation != 0.0;
   WeightedResidual J = weighted(at, error, before, loss_, calibration_of_[residual] != 0);
-  if (!at_present_) {
-    J.r -= J.anchor.transpose() * taken_.moved(term.anchor_place) + J.seen.transpose() * taken_.moved(at.place);
-    if (correlated) J.r -= J.before.transpose() * taken_.moved(term.residuals[residual - 1].place);
-  }
   const std::size_t seen = pose_of_[residual], seen_before = correlated ? pose_of_[residual - 1] : 0;
   // Another camera at the anchor's own state.
   if (seen == 0) J.anchor += std::exchange(J.seen, Transposed<6>::Zero());

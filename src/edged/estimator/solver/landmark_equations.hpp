@@ -12,8 +12,8 @@ namespace edged {
 /// Adds landmarks one by one.
 class LandmarkEquations {
  public:
-  /// All three must outlive this.
-  LandmarkEquations(const Window& window, const Layout& layout, Linearisation at, NormalEquations& equations);
+  /// Layout and equations must outlive this.
+  LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations);
   /// An inverse depth without a place in the layout is eliminated, and added to `eliminated` if there is one.
   void add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated);
   /// Adds to the gradient alone. An inverse depth is eliminated by its equation of an earlier linearization, if it has
@@ -32,8 +32,7 @@ class LandmarkEquations {
 
   const Layout& layout_;
   NormalEquations& equations_;
-  CameraPoses present_, taken_;
-  bool at_present_;  ///< the two are the same
+  CameraPoses views_;
   const ceres::LossFunction& loss_;
   std::vector<Eigen::Index> poses_, calibrations_;  ///< global columns, by the index of a state and of a camera
 

@@ -51,11 +51,6 @@ struct NormalEquations {
   Eigen::VectorXd g;
 };
 
-/// The linearization point of Jacobians; residuals are always at the present values. FirstEstimates: at the
-/// Window::linearisation_point of each block, so that unobservable directions stay unobservable; d is then relative to
-/// that point.
-enum class Linearisation { Present, FirstEstimates };
-
 /// The coupling of a landmark's inverse depth and the pose of one of its views.
 struct DepthByPose {
   Eigen::Index global = 0;

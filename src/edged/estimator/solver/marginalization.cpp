@@ -64,7 +64,7 @@ LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<B
   std::set<BlockKey> all_leaving = leaving;
   for (const LandmarkTerm& term : cost.landmarks) all_leaving.insert({BlockKind::InverseDepth, term.id});
   const Layout layout(blocks_of(cost), all_leaving);
-  NormalEquations eq = normal_equations(window, cost, layout, Linearisation::FirstEstimates);
+  NormalEquations eq = normal_equations(window, cost, layout);
   eliminate(layout.leaving, eq);
 
   LinearPrior prior;
@@ -79,7 +79,7 @@ LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<B
   prior.information = prior.J.transpose() * prior.J;
   prior.blocks = layout.staying;
   for (const BlockKey& key : prior.blocks) {
-    const double* x0 = window.linearisation_point(key);
+    const double* x0 = window.block(key);
     prior.x0.emplace_back(x0, x0 + block_size(key.kind));
   }
   return prior;

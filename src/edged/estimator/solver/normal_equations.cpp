@@ -23,10 +23,10 @@ struct LinearFactor {
 };
 
 /// False where the factor is not defined at the present values.
-bool linearise(const Window& window, const Factor& factor, const Layout& layout, Linearisation at, LinearFactor& out) {
+bool linearise(const Window& window, const Factor& factor, const Layout& layout, LinearFactor& out) {
   const std::size_t n = factor.blocks().size();
   const int rows = factor.num_residuals();
-  std::vector<const double*> now(n), taken(n);
+  std::vector<const double*> now(n);
   std::vector<RowMajorMatrix> J(n);
   std::vector<double*> J_data(n);
   out.blocks.clear();
@@ -34,15 +34,13 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
   for (std::size_t i = 0; i < n; ++i) {
     const BlockKey& key = factor.blocks()[i];
     now[i] = window.block(key);
-    taken[i] = at == Linearisation::Present ? now[i] : window.linearisation_point(key);
     J[i].resize(rows, block_size(key.kind));
     J_data[i] = J[i].data();
     out.blocks.push_back({columns, tangent_size(key.kind), layout.offset.at(key)});
     columns += tangent_size(key.kind);
   }
   out.r.resize(rows);
-  if (!factor.Evaluate(taken.data(), out.r.data(), J_data.data())) return false;
-  if (now != taken && !factor.Evaluate(now.data(), out.r.data(), nullptr)) return false;
+  if (!factor.Evaluate(now.data(), out.r.data(), J_data.data())) return false;
   double rho[3] = {0.0, 1.0, 0.0};
   if (factor.loss() != nullptr) factor.loss()->Evaluate(out.r.squaredNorm(), rho);
   const double weight = std::sqrt(rho[1]);
@@ -51,10 +49,6 @@ bool linearise(const Window& window, const Factor& factor, const Layout& layout,
   for (std::size_t i = 0; i < n; ++i) {
     const Placed& block = out.blocks[i];
     out.J.middleCols(block.local, block.size) = weight * J[i].leftCols(block.size);
-    if (now[i] == taken[i]) continue;
-    VectorXd moved(block.size);
-    tangent_difference(factor.blocks()[i].kind, now[i], taken[i], moved.data());
-    out.r -= out.J.middleCols(block.local, block.size) * moved;
   }
   return true;
 }
@@ -66,7 +60,7 @@ struct PriorGradient {
   std::vector<std::pair<Index, Eigen::Matrix3d>> turns;  ///< first column of a rotation, its derivatives by a step
 };
 
-PriorGradient gradient_of(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at) {
+PriorGradient gradient_of(const Window& window, const LinearPrior& prior, const Layout& layout) {
   PriorGradient out;
   VectorXd d(prior.information.cols());
   Index column = 0;
@@ -75,11 +69,8 @@ PriorGradient gradient_of(const Window& window, const LinearPrior& prior, const 
     const Index size = tangent_size(key.kind);
     const double* now = window.block(key);
     tangent_difference(key.kind, now, prior.x0[i].data(), d.data() + column);
-    if (at == Linearisation::FirstEstimates && window.linearisation_point(key) != now) {
-      d.segment(column, size).setZero();  // steps count from there
-    } else if (key.kind == BlockKind::Pose) {
+    if (key.kind == BlockKind::Pose)
       out.turns.emplace_back(column + 3, so3::right_jacobian_inverse(d.segment<3>(column + 3)));
-    }
     out.blocks.push_back({column, size, layout.offset.at(key)});
     column += size;
   }
@@ -90,9 +81,8 @@ PriorGradient gradient_of(const Window& window, const LinearPrior& prior, const 
 }
 
 /// The window's prior, whose J^T J is known: only rotations change its derivatives away from its linearization point.
-void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, Linearisation at,
-               NormalEquations& equations) {
-  const PriorGradient gradient = gradient_of(window, prior, layout, at);
+void add_prior(const Window& window, const LinearPrior& prior, const Layout& layout, NormalEquations& equations) {
+  const PriorGradient gradient = gradient_of(window, prior, layout);
   MatrixXd H = prior.information;
   for (const auto& [first, by_turn] : gradient.turns) {
     H.middleCols<3>(first) *= by_turn;
@@ -113,19 +103,19 @@ double value_of(const Window& window, const Factor& factor) {
 
 }  // namespace
 
-NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout,
                                  std::vector<DepthEquation>* eliminated) {
   NormalEquations equations(layout.size);
   LinearFactor linear;
   MatrixXd H;
-  if (cost.prior) add_prior(window, cost.prior->prior(), layout, at, equations);
+  if (cost.prior) add_prior(window, cost.prior->prior(), layout, equations);
   for (const auto& factor : cost.factors) {
-    if (!linearise(window, *factor, layout, at, linear)) continue;
+    if (!linearise(window, *factor, layout, linear)) continue;
     H.setZero(linear.J.cols(), linear.J.cols());
     H.selfadjointView<Eigen::Lower>().rankUpdate(linear.J.transpose());
     equations.add(H, linear.J.transpose() * linear.r, linear.blocks);
   }
-  LandmarkEquations landmarks(window, layout, at, equations);
+  LandmarkEquations landmarks(window, layout, equations);
   for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, eliminated);
   return equations;
 }
@@ -136,14 +126,14 @@ Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& l
   equations.g.setZero(layout.size);
   LinearFactor linear;
   if (cost.prior) {
-    const PriorGradient prior = gradient_of(window, cost.prior->prior(), layout, Linearisation::Present);
+    const PriorGradient prior = gradient_of(window, cost.prior->prior(), layout);
     equations.add_gradient(prior.g, prior.blocks);
   }
   for (const auto& factor : cost.factors) {
-    if (!linearise(window, *factor, layout, Linearisation::Present, linear)) continue;
+    if (!linearise(window, *factor, layout, linear)) continue;
     equations.add_gradient(linear.J.transpose() * linear.r, linear.blocks);
   }
-  LandmarkEquations landmarks(window, layout, Linearisation::Present, equations);
+  LandmarkEquations landmarks(window, layout, equations);
   auto depth = eliminated.begin();
   for (const LandmarkTerm& term : cost.landmarks) {
     const bool known = depth != eliminated.end() && depth->landmark == term.id;

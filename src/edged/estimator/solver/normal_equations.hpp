@@ -8,10 +8,10 @@
 
 namespace edged {
 
-/// Linearises the terms. Robust losses act with their present weight; terms that are not defined at the present values
-/// (a landmark behind a camera) are skipped. Inverse depths that are not in the layout are eliminated, and added to
-/// `eliminated`, if given, for their steps.
-NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout, Linearisation at,
+/// Linearises the terms at the present values. Robust losses act with their present weight; terms that are not defined
+/// at the present values (a landmark behind a camera) are skipped. Inverse depths that are not in the layout are
+/// eliminated, and added to `eliminated`, if given, for their steps.
+NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout,
                                  std::vector<DepthEquation>* eliminated = nullptr);
 
 /// The gradient of the terms alone, at the present values. The inverse depths are eliminated by their equations of an

@@ -45,7 +45,7 @@ class Neighbourhood {
  private:
   void linearise() {
     eliminated_.clear();
-    NormalEquations equations = normal_equations(window_, cost_, layout_, Linearisation::Present, &eliminated_);
+    NormalEquations equations = normal_equations(window_, cost_, layout_, &eliminated_);
     scale_ = unit_diagonal_scale(equations.H);
     H_ = std::move(equations.H);
     H_.array() *= (scale_ * scale_.transpose()).array();

@@ -219,7 +219,7 @@ TEST_P(NormalEquationsOf, TheWindowHaveTheGradientOfTheCost) {
   Cost cost = cost_of(window);
   for (LandmarkTerm& term : cost.landmarks) term.coupled = true;  // nothing eliminated
   const Layout layout(blocks_of(cost));
-  const Eigen::VectorXd g = normal_equations(window, cost, layout, Linearisation::Present).g;
+  const Eigen::VectorXd g = normal_equations(window, cost, layout).g;
   const double largest = g.cwiseAbs().maxCoeff();
   const std::vector<double> kept = window.estimates();
   for (const auto& [key, offset] : layout.offset) {
@@ -248,7 +248,7 @@ TEST_P(NormalEquationsOf, TheWindowHaveTheGradientThatIsComputedAlone) {
   cost.landmarks.front().coupled = true;
   const Layout layout(blocks_of(cost));
   std::vector<DepthEquation> eliminated;
-  const Eigen::VectorXd g = normal_equations(window, cost, layout, Linearisation::Present, &eliminated).g;
+  const Eigen::VectorXd g = normal_equations(window, cost, layout, &eliminated).g;
   std::vector<DepthEquation> kept = eliminated;
   for (DepthEquation& depth : kept) depth.g = 1e9;
   EXPECT_LT((gradient(window, cost, layout, kept) - g).norm(), 1e-9 * g.norm());

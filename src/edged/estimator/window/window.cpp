@@ -308,14 +308,6 @@ const double* Window::block(BlockKey key) const {
   return key.kind == BlockKind::Pose ? found->second.pose.data() : found->second.motion.data();
 }
 
-const double* Window::linearisation_point(BlockKey key) const {
-  if (is_calibration(key)) return block(key);
-  const LinearPrior& prior = prior_->prior();
-  const auto in_prior = std::ranges::find(prior.blocks, key);
-  if (in_prior == prior.blocks.end()) return block(key);
-  return prior.x0[static_cast<std::size_t>(in_prior - prior.blocks.begin())].data();
-}
-
 void Window::move(BlockKey key, std::span<const double> step) {
   const double* values = block(key);
   const auto size = static_cast<std::size_t>(tangent_size(key.kind));

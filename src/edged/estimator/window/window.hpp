@@ -187,9 +187,6 @@ class Window {
 
   /// The present values of a block, null when it is not in the window.
   const double* block(BlockKey key) const;
-  /// First-estimate linearisation point of a block: its point in the prior, else its present value. Calibrations are
-  /// relinearised: they are observable, and far off at first.
-  const double* linearisation_point(BlockKey key) const;
   /// Moves a block by a step in its tangent space.
   void move(BlockKey key, std::span<const double> step);
   /// The values of all blocks. restore() sets them again while the window holds the same blocks.

@@ -166,19 +166,6 @@ TEST(Window, TiesTheCalibrationsOfCamerasBehindOneLens) {
   EXPECT_GT(misfit(off, {}), 100.0);
 }
 
-TEST(Window, LinearisesWhatThePriorHoldsWhereThePriorWasMade) {
-  Tracked tracked;
-  Window& window = tracked.window;
-  const BlockKey second{BlockKind::Pose, std::next(window.states().begin())->first};
-  const BlockKey last{BlockKind::Pose, window.newest_id()};
-  window.drop_oldest(prior_of(window, second));
-  const double made_at = window.block(second)[0];
-  window.move(second, std::array{0.5, 0.0, 0.0, 0.0, 0.0, 0.0});
-  EXPECT_EQ(window.block(second)[0], made_at + 0.5);
-  EXPECT_EQ(window.linearisation_point(second)[0], made_at);
-  EXPECT_EQ(window.linearisation_point(last), window.block(last));
-}
-
 TEST(Window, ComesBackFromAStepToTheBit) {
   Tracked tracked({.cameras = 2});
   Window& window = tracked.window;
