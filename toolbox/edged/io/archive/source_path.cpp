@@ -100,8 +100,10 @@ SourcePath SourcePath::parent_path() const {
 bool SourcePath::is_packed() const { return archive_ || is_gzip(path_); }
 
 bool SourcePath::is_file() const {
+  if (archive_) return archive_->is_file(path_);
+  require_regular_file(path_);
   std::error_code ignored;
-  return archive_ ? archive_->is_file(path_) : fs::is_regular_file(path_, ignored);
+  return fs::is_regular_file(path_, ignored);
 }
 
 bool SourcePath::is_folder() const {

@@ -35,7 +35,7 @@ class SourcePath {
   std::optional<std::filesystem::path> disk_path() const { return archive_ ? std::nullopt : std::optional(path_); }
   /// True in an archive or for a gzip file, which can only be read sequentially.
   bool is_packed() const;
-  bool is_file() const;
+  bool is_file() const;  ///< refuses pipes and devices by an InputError
   bool is_folder() const;
   /// Names of the entries of a folder, sorted.
   std::vector<std::string> names() const;

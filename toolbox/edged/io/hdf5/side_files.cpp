@@ -18,10 +18,7 @@ namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
+bool is_file(const fs::path& path) { return SourcePath(path).is_file(); }
 
 std::optional<fs::path> first_file(const std::vector<fs::path>& candidates) {
   const auto found = std::ranges::find_if(candidates, is_file);
