@@ -13,7 +13,7 @@
 #include "common/source.hpp"
 #include "common/status_line.hpp"
 #include "edged/checks/calibration_fit.hpp"
-#include "edged/checks/run_check.hpp"
+#include "edged/checks/recording_check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/odometry.hpp"
 #include "edged/pipeline/mode.hpp"
@@ -37,8 +37,10 @@ class CheckRun {
   /// begin: the initial calibration of the cameras.
   CheckRun(Source& source, const Rig& begin, Mode mode, bool quiet)
       : source_(source),
-        check_(source.dataset->info(), used_cameras(source.calibration.rig, mode), source.calibration.has_extrinsics,
-               source.calibration.known_noise()),
+        check_(source.dataset->info(),
+               CheckedCalibration{used_cameras(source.calibration.rig, mode).cameras, source.calibration.has_extrinsics,
+                                  source.calibration.known_noise()},
+               RecordingCheck::Effort::DuringRun),
         odometry_(begin, source.calibration.imu, mode, config_, {kInOrder}),
         status_(quiet),
         rig_(odometry_.rig()),
@@ -87,7 +89,7 @@ class CheckRun {
 
   Source& source_;
   OdometryConfig config_ = asking_each_camera();
-  RunCheck check_;
+  RecordingCheck check_;
   Odometry odometry_;
   StatusLine status_;
   RunStatistics statistics_;

@@ -42,11 +42,13 @@ Recording open_of_any_size(SourceOptions source) {
 int run_info(const InfoOptions& options) {
   catch_interrupts();
   const Recording recording = open_of_any_size(options.source);
-  const auto [survey, damage] = survey_recording(*recording.dataset, options.quiet, {});
+  RecordingCollector collector(recording.dataset->info());
+  const WholeRead read = read_whole(*recording.dataset, options.quiet, [&](const Measurement& m) { collector.add(m); });
+  const RecordingStatistics survey = collector.result(*recording.dataset, read.truth);
   print_result(options.json, to_json(survey),
                fmt::format("{}{:<15} {}\n{:<15} {}\n", to_text(survey), "calibration", calibration_text(recording),
                            "next", command_line("doctor", options.source)));
-  if (damage) throw InputError(*damage);
+  if (read.damage) throw InputError(*read.damage);
   if (interrupt_signal() != 0) spdlog::warn("interrupted: the counts cover the part that was read");
   return exit_code_of_interrupt();
 }

@@ -252,24 +252,20 @@ nlohmann::ordered_json to_json(const RecordingStatistics& s) {
   return json;
 }
 
-SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also) {
-  RecordingCollector surveyor(dataset.info());
-  std::optional<std::string> damage;
+WholeRead read_whole(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& use) {
+  WholeRead read;
   try {
     read_through(dataset, quiet, "read", [&](const Measurement& measurement) {
-      surveyor.add(measurement);
-      if (also && std::holds_alternative<ImuSample>(measurement))
-        std::ranges::for_each(surveyor.imu_passed(), also);
-      else if (also)
-        also(measurement);
+      use(measurement);
       return true;
     });
   } catch (const InputError& error) {
-    damage = error.what();
+    read.damage = error.what();
   }
-  const OwnTruth truth = read_truth(dataset);
-  if (!damage && !truth.problem.empty()) damage = truth.problem;
-  return {surveyor.result(dataset, truth.truth), damage};
+  OwnTruth truth = read_truth(dataset);
+  if (!read.damage && !truth.problem.empty()) read.damage = truth.problem;
+  read.truth = std::move(truth.truth);
+  return read;
 }
 
 }  // namespace edged

@@ -17,13 +17,12 @@ namespace edged {
 std::string to_text(const RecordingStatistics& survey);
 nlohmann::ordered_json to_json(const RecordingStatistics& survey);
 
-struct SurveyRun {
-  RecordingStatistics survey;
+struct WholeRead {
+  std::optional<GroundTruth> truth;
   std::optional<std::string> damage;  ///< the error that ended reading
 };
 
-/// Surveys a recording, with a status line. Ends early, with what was read so far, when the user interrupts. also:
-/// called with every measurement that passes the gate of the IMU; may be empty.
-SurveyRun survey_recording(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& also);
+/// Reads a recording with its ground truth, with a status line. Ends early when the user interrupts.
+WholeRead read_whole(Dataset& dataset, bool quiet, const std::function<void(const Measurement&)>& use);
 
 }  // namespace edged

@@ -8,7 +8,7 @@
 
 #include "common/findings.hpp"
 #include "edged/camera/field_of_view.hpp"
-#include "edged/checks/run_check.hpp"
+#include "edged/checks/recording_check.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "run/run_context.hpp"
@@ -60,7 +60,10 @@ class RunChecks : public RunObserver {
  public:
   explicit RunChecks(RunContext& run)
       : run_(run),
-        check_(run.info(), run.used, run.source.calibration.has_extrinsics, run.source.calibration.known_noise()) {}
+        check_(run.info(),
+               CheckedCalibration{run.used.cameras, run.source.calibration.has_extrinsics,
+                                  run.source.calibration.known_noise()},
+               RecordingCheck::Effort::DuringRun) {}
 
   void on_measurement(const Measurement& measurement) override {
     const auto timer = run_.timings.measure_often("check");
@@ -84,7 +87,7 @@ class RunChecks : public RunObserver {
 
  private:
   RunContext& run_;
-  RunCheck check_;
+  RecordingCheck check_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // What `edged run` checks beside its steps, for edged.run.
-#include "edged/checks/run_check.hpp"
+#include "edged/checks/recording_check.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -21,8 +21,11 @@ class PyRunCheck {
  public:
   PyRunCheck(const PyRecording& recording, PyOdometry& odometry)
       : dataset_(*recording.dataset),
-        check_(dataset_.info(), odometry.odometry.rig(), recording.calibration && recording.calibration->has_extrinsics,
-               recording.calibration ? recording.calibration->known_noise() : std::nullopt) {}
+        check_(dataset_.info(),
+               CheckedCalibration{odometry.odometry.rig().cameras,
+                                  recording.calibration && recording.calibration->has_extrinsics,
+                                  recording.calibration ? recording.calibration->known_noise() : std::nullopt},
+               RecordingCheck::Effort::DuringRun) {}
 
   void add(const PyMeasurement& measurement) {
     check_.add(measurement.value);
@@ -51,7 +54,7 @@ class PyRunCheck {
   }
 
   const Dataset& dataset_;
-  RunCheck check_;
+  RecordingCheck check_;
   std::vector<std::string> logged_;
 };
 

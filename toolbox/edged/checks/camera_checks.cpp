@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/camera/field_of_view.hpp"
 #include "edged/checks/check_groups.hpp"
 #include "edged/core/angles.hpp"
 
@@ -216,6 +217,10 @@ void check_camera(const CameraCheck& check, Findings& out) {
   if (check.lens)
     return out.error(fmt::format("camera {}: it turns like the gyro only through another lens: {}", name, *check.lens),
                      "choose the calibration of this lens, or calibrate it anew");
+  if (check.gross_deg > 0.0)
+    return out.error(fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
+                                 name, check.gross_deg),
+                     "check the rotation of T_B_C and its direction: `edged calib` shows both");
   if (!check.sure())
     return out.note(fmt::format(
         "camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % of "
@@ -231,6 +236,18 @@ void check_camera(const CameraCheck& check, Findings& out) {
                                 name, to_seconds(check.agreement->turning), to_seconds(check.least_turning)),
                     "record more in which the sensor turns about all axes before a scene with texture");
   out.list.insert(out.list.end(), found.list.begin(), found.list.end());
+}
+
+/// Once for cameras of the same lens.
+void check_lever_arm(const CameraCheck& check, const std::vector<CameraCheck>& all, Findings& out) {
+  constexpr double kLongest_m = 2.0;
+  const double arm_m = check.camera.T_B_C.translation().norm();
+  const auto first =
+      std::ranges::find_if(all, [&](const CameraCheck& other) { return is_same_lens(other.camera, check.camera); });
+  if (arm_m > kLongest_m && &check == &*first)
+    out.error(fmt::format("camera {}: calibrated {:.4g} m away from the IMU, as if its translation were in millimetres",
+                          check.camera.name, arm_m),
+              "translations are in metres: divide that of T_B_C by 1000");
 }
 
 /// Uses the camera with the most information. Rotations overlap and displacements are noisy: the correlation of n
@@ -273,6 +290,7 @@ void check_cameras(const CheckInput& input, Findings& out) {
   const auto before = errors();
   for (const CameraCheck& check : input.cameras)
     if (check_size(check, input.recording, out) && comparable) check_camera(check, out);
+  for (const CameraCheck& check : input.cameras) check_lever_arm(check, input.cameras, out);
   if (comparable && errors() == before) check_accel(input, out);
   if (!input.calibrated)
     out.note("no calibration, so none is checked", "give --rig NAME or --calib FILE");

@@ -24,6 +24,7 @@ struct CameraCheck {
   std::optional<ClockRate> clock = {};     ///< if the IMU clock runs at another rate than the camera clock
   Duration least_turning{0};               ///< a contradiction in a shorter turning_time() does not count
   std::optional<std::string> lens = {};    ///< better_lens()
+  double gross_deg = 0.0;                  ///< grossly_off_deg()
 
   /// True if the gyro explains enough of the rotation for the other results to be reliable.
   bool sure() const { return agreement && agreement->unexplained < 0.5; }

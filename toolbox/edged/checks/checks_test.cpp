@@ -44,6 +44,14 @@ TEST(Checks, NamesACauseAndNotTheTimeOffsetThatFollows) {
   EXPECT_EQ(remedy(Error, "another lens"), "NO SUCH FINDING");
 }
 
+TEST(Checks, NamesALeverArmInMillimetresOnceForEachLens) {
+  CameraCheck frames = agreeing(), events = agreeing(), other = agreeing();
+  frames.camera.T_B_C = events.camera.T_B_C = SE3(Eigen::Quaterniond::Identity(), {60, 0, 0});
+  other.camera.T_B_C = SE3(Eigen::Quaterniond::Identity(), {90, 0, 0});
+  const auto findings = check_recording({healthy(), true, {frames, events, other}});
+  EXPECT_EQ(std::ranges::count_if(findings, [](const Finding& f) { return f.text.find("in millimetres") < 200; }), 2);
+}
+
 TEST(Checks, NameFramesThatTheRunDroppedAsItsOwn) {
   RecordingStatistics s = healthy();
   s.frames.gaps = 1, s.frames.longest = {{timestamp_from_seconds(3), std::chrono::milliseconds(300)}};

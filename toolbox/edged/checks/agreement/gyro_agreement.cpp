@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "edged/checks/agreement/ray_fit.hpp"
+#include "edged/core/angles.hpp"
 #include "edged/core/statistics.hpp"
 
 namespace edged {
@@ -223,6 +224,32 @@ std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, cons
   if (!mirrored || mirrored->unexplained > kFarBetter * std::min(given->unexplained, 2 * kUnlike)) return given;
   mirrored->mirrored = true;
   return mirrored;
+}
+
+double grossly_off_deg(std::span<const Turn> turns, const GyroIntegral& gyro, const RigCamera& given,
+                       const GyroAgreement& found) {
+  // Mirror recordings, two people in view included: correct calibrations reach 22 deg and 1.22 times the error, but not
+  // both; those wrong by 90 deg have at least 80 deg and 1.20 times.
+  constexpr double kGross = 45.0 * kDegree, kClearlyWorse = 1.15;
+  constexpr double kByChance =
+      3.0;  // standard deviations of the share, where turns that do not overlap are independent
+  const double off = so3::log(given.T_B_C.rotation().conjugate() * Eigen::Quaterniond(found.R_B_C)).norm();
+  std::vector<double> errors_found, errors_given;
+  double balance = 0.0;  // of the turns that each explains better
+  for (const Turn& turn : turns) {
+    const auto error = [&](Duration shift, const Eigen::Matrix3d& R_B_C) {
+      const auto phi = gyro.between(turn.begin + shift, turn.end + shift);
+      return phi ? (*phi / found.gyro_scale - R_B_C * turn.phi_C).norm() / to_seconds(turn.end - turn.begin) : NAN;
+    };
+    const double by_found = error(found.time_offset, found.R_B_C), by_given = error(given.time_offset, given.T_B_C.R());
+    if (!std::isfinite(by_found + by_given)) continue;
+    errors_found.push_back(by_found);
+    errors_given.push_back(by_given);
+    balance += by_found < by_given ? 1.0 : -1.0;
+  }
+  if (off < kGross || errors_found.empty()) return 0.0;
+  const bool by_chance = balance < kByChance * std::sqrt(static_cast<double>(errors_found.size()) * overlap_of(turns));
+  return by_chance || median(errors_given) < kClearlyWorse * median(errors_found) ? 0.0 : off * kDegreesPerRadian;
 }
 
 }  // namespace edged

@@ -37,4 +37,9 @@ inline constexpr Duration kMostShift = std::chrono::milliseconds(100);
 std::optional<GyroAgreement> compare_with_gyro(std::span<const Turn> turns, const GyroIntegral& gyro,
                                                Duration expected);
 
+/// Turns that are too noisy to determine R_B_C still detect a grossly wrong one: the angle to the one found, if that
+/// explains the turns clearly better than the calibration, and not by chance, as at rest; else 0.
+double grossly_off_deg(std::span<const Turn> turns, const GyroIntegral& gyro, const RigCamera& given,
+                       const GyroAgreement& found);
+
 }  // namespace edged

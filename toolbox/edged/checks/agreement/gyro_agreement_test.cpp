@@ -154,6 +154,31 @@ TEST(GyroAgreement, TellsAGyroInDegrees) {
   EXPECT_NEAR(found->gyro_scale, 180 / M_PI, 0.5);
 }
 
+/// The angle by which turns with so much noise contradict a camera of that mounting.
+double gross_deg(unsigned seed, const GyroIntegral& gyro, std::vector<Turn> turns, double noise_rad_s,
+                 const Eigen::Matrix3d& R_B_C) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, noise_rad_s * 0.08);
+  for (Turn& turn : turns)
+    for (double& phi : turn.phi_C) phi += normal(random);
+  const auto found = compare_with_gyro(turns, gyro, Duration(0));
+  const RigCamera given{"events", Modality::Events, {}, SE3(R_B_C, Eigen::Vector3d::Zero()), Duration(0)};
+  return found ? grossly_off_deg(turns, gyro, given, *found) : 0.0;
+}
+
+TEST(GyroAgreement, NoisyTurnsTellACameraThatIsMountedAQuarterTurnOffButNotARightOne) {
+  const Eigen::Matrix3d off = kTurned * so3::exp({0, 0, M_PI / 2}).toRotationMatrix();
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    EXPECT_NEAR(gross_deg(seed, gyro_of(8), turns_of(8, kTurned, 0.0), 0.6, off), 90.0, 15.0);
+    EXPECT_EQ(gross_deg(seed, gyro_of(8), turns_of(8, kTurned, 0.0), 0.6, kTurned), 0.0);
+  }
+}
+
+TEST(GyroAgreement, TurnsOfNoiseAlonePointToNoMounting) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U})
+    EXPECT_EQ(gross_deg(seed, gyro_of(8, 0.02), turns_of(8, Eigen::Matrix3d::Zero(), 0.0), 0.4, kTurned), 0.0);
+}
+
 TEST(GyroAgreement, SaysNothingOfTooFewTurnsOrOtherTimes) {
   const std::vector<Turn> turns = turns_of(8, kTurned, 0.0);
   EXPECT_FALSE(compare_with_gyro(std::span(turns).first(10), gyro_of(8), Duration(0)));

@@ -1,35 +1,49 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Checks during a run whether recording and calibration contradict each other: the cheap part of `edged doctor`.
+// Collects in one pass all that the checks judge: of a whole recording for `edged doctor`, cheaply during a run.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "edged/checks/agreement/accel_axes.hpp"
+#include "edged/checks/agreement/external_agreement.hpp"
 #include "edged/checks/agreement/stereo_agreement.hpp"
 #include "edged/checks/checks.hpp"
 #include "edged/dataset.hpp"
 
 namespace edged {
 
-/// Compares the cameras of the mode with the gyro until they have rotated enough. To be cheap, it uses few corners,
-/// only during rotation, and only one of two cameras of the same lens. Most events are only counted.
-class RunCheck {
- public:
-  /// used: the cameras of the run; the first of each kind is checked. has_extrinsics: their poses are calibrated.
-  /// noise: as calibrated, if it is.
-  RunCheck(const DatasetInfo& info, const Rig& used, bool has_extrinsics, std::optional<ImuNoise> noise = {});
+/// What the calibration says.
+struct CheckedCalibration {
+  std::vector<RigCamera> cameras;  ///< those to check, by their names in the recording
+  bool has_extrinsics = true;      ///< their poses are calibrated
+  std::optional<ImuNoise> noise = {};
+};
 
-  /// To be called with each measurement before it is used. Those of other cameras are ignored.
+/// Compares cameras with the gyro, and counts what all streams contain.
+class RecordingCheck {
+ public:
+  enum class Effort {
+    Thorough,
+    /// Compares the first camera of each kind until it has rotated enough: with few corners, only during rotation, and
+    /// only one of two cameras of the same lens. Most events are only counted. Other cameras are ignored.
+    DuringRun
+  };
+
+  /// given: nothing without a calibration.
+  RecordingCheck(const DatasetInfo& info, std::optional<CheckedCalibration> given, Effort effort);
+
+  /// To be called with each measurement before it is used.
   void add(const Measurement& measurement);
 
-  /// Errors that have become certain since the last call.
+  /// Errors that have become certain since the last call, during a run.
   std::vector<Finding> news();
 
-  /// Warnings and errors from all measurements. To be called after the last one. truth: that of the dataset.
-  /// dropped_frames: before add, as in CheckInput.
+  /// All findings; during a run warnings and errors. To be called after the last measurement. truth: that of the
+  /// dataset. dropped_frames: before add, as in CheckInput.
   std::vector<Finding> findings(const Dataset& dataset, const std::optional<GroundTruth>& truth,
                                 bool dropped_frames = false);
 
@@ -38,19 +52,15 @@ class RunCheck {
 
  private:
   struct Camera {
-    RigCamera given;
+    CameraCheck check;
     VisualTurns visual;
     std::size_t counted = 0;  ///< rotations counted so far
     Duration turning{0};      ///< duration of rotation so far
     Duration next_look{0};    ///< duration of rotation at the next comparison
     bool done = false;        ///< comparison finished
-    bool same_lens = false;   ///< has the lens of the previous camera
-    bool deferred = false;    ///< the previous camera is checked instead, unless it has too little data
-    /// Angle to a rotation that fits clearly better than the calibration, if the check of `edged doctor` is
-    /// undetermined.
-    double contradiction_deg = 0.0;
-    std::optional<GyroAgreement> agreement = std::nullopt;
-    std::optional<std::string> lens = std::nullopt;  ///< better_lens()
+    bool deferred = false;    ///< a camera of the same lens is checked instead, unless it has too little data
+
+    const RigCamera& given() const { return check.camera; }
   };
 
   /// The stamps of one kind of sensor.
@@ -68,17 +78,19 @@ class RunCheck {
     std::size_t next(const Measurement& measurement);
   };
 
+  bool during_run() const { return effort_ == Effort::DuringRun; }
+  void add_imu(std::span<const ImuSample> passed);
   void follow(Camera& camera, const Measurement& measurement);
   void compare(Camera& camera);
-  static void check_camera(const Camera& camera, const RecordingStatistics& statistics, Findings& out);
   std::vector<Finding> check(const RecordingStatistics& statistics, bool dropped_frames) const;
 
-  bool has_extrinsics_;
-  std::optional<ImuNoise> noise_;
+  Effort effort_;
+  std::optional<CheckedCalibration> given_;
   RecordingCollector collector_;
   GyroIntegral gyro_;
   double rate_ = 0.0;  ///< running mean of the gyro rate [rad/s]
   AccelAxes accel_axes_;
+  ExternalCheck external_;
   StereoAgreement stereo_;
   std::vector<Camera> cameras_;
   StreamSpan imu_, visual_;
