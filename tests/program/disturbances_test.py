@@ -27,6 +27,7 @@ class Row:
     doctor: int = 0  # exit code
     run: int | None = None  # exit code; None: `doctor` alone is asked
     never: str = "camera|covariance"  # what neither may say, as it is a consequence
+    mode: str = "frames"  # of the run
 
 
 def imu(change):
@@ -186,9 +187,9 @@ ROWS = {
     "truth_flipped": Row(truth(flipped), "warning", r"ground truth: 2 jumps, the first at 3\.500 s by 0\.2\d m and 180 deg", "leave the wrong poses out", run=0),
     "truth_zero": Row(truth(zero), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0),
     "truth_in_millimetres": Row(truth(millimetres), "warning", r"ground truth: 2 jumps, the first at {at}", "leave the wrong poses out", run=0),
-    "events_halved": Row(events(lambda x, y: (x // 2, y // 2)), "error", "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, never="frames:"),
-    "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "camera events: its rotation .* contradicts the gyro", r"180|179|178", doctor=3, never="frames:"),
-    "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "camera events: its rotation .* as if its image were reflected", "", doctor=3, never="frames:"),
+    "events_halved": Row(events(lambda x, y: (x // 2, y // 2)), "error", "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, run=5, never="frames:", mode="fused"),
+    "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "events: they lie on the edges of the frames only if turned by 180 deg", "driver or the converter", doctor=3, run=5, mode="fused"),
+    "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "events: they lie on the edges of the frames only if mirrored left to right", "driver or the converter", doctor=3, run=5, mode="fused"),
     "imu_reversed": Row(imu(lambda rows, _: rows[::-1]), "refused", "imu.txt:.* stamp goes back in time", "mend or replace the file", doctor=3, run=3),
     "all_silent_200_ms": Row(silence(0.2), "warning", r"1 IMU gaps of 0\.20\d s together, .* at {at}", "USB bus", run=0),
     "all_silent_500_ms": Row(silence(0.49), "warning", r"1 IMU gaps of 0\.49\d s together, .* at {at}", "USB bus"),
@@ -234,7 +235,7 @@ class Disturbed(WithFlight):
         recording = self.disturbed(row)
         self.assert_named(row, edged("doctor", recording, "--json", "--quiet"), row.doctor, lambda findings: findings)
         if row.run is not None:
-            result = edged("run", recording, "--mode", "frames", "--out", self.folder / "run", "--json", "--quiet")
+            result = edged("run", recording, "--mode", row.mode, "--out", self.folder / "run", "--json", "--quiet")
             self.assert_named(row, result, row.run, lambda metrics: metrics["findings"])
             if row.severity != "refused":
                 self.assertEqual(json.loads(result.stdout)["trusted"], row.run == 0)

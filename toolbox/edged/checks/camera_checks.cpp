@@ -285,6 +285,9 @@ void check_cameras(const CheckInput& input, Findings& out) {
   for (const std::string& pair : input.exchanged)
     out.error(fmt::format("cameras {}: their images match only as if exchanged", pair),
               "exchange their topics or files, or their names in the calibration", Unusable::Calibration);
+  if (input.flipped)
+    out.error(fmt::format("events: they lie on the edges of the frames only if {}", *input.flipped),
+              "change their pixels in the driver or the converter", Unusable::Calibration);
   const bool comparable = !is_unusable(Unusable::Calibration, out.list);
   const auto errors = [&out] { return std::ranges::count(out.list, Severity::Error, &Finding::severity); };
   const auto before = errors();

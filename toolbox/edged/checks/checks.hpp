@@ -41,6 +41,7 @@ struct CheckInput {
   std::optional<std::string> accel_axes = {};  ///< AccelAxes::better()
   std::optional<ImuNoise> noise = {};          ///< as calibrated
   std::vector<std::string> exchanged = {};     ///< StereoAgreement::exchanged()
+  std::optional<std::string> flipped = {};     ///< EventAgreement::better()
 };
 
 /// The remedy for a camera whose inverse transform fits.

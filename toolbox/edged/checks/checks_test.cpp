@@ -44,6 +44,19 @@ TEST(Checks, NamesACauseAndNotTheTimeOffsetThatFollows) {
   EXPECT_EQ(remedy(Error, "another lens"), "NO SUCH FINDING");
 }
 
+TEST(Checks, NamesEventsThatLieElsewhereAndNoMountingThatFollows) {
+  const RecordingStatistics s = healthy();
+  CheckInput input{s, true, {agreeing()}};
+  input.cameras[0].agreement->unexplained = 0.7;
+  input.cameras[0].gross_deg = 170.0;
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "camera cam: turns as if mounted about 170 deg off"),
+              HasSubstr("T_B_C"));
+  input.flipped = "mirrored left to right";
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "on the edges of the frames only if mirrored left to right"),
+              HasSubstr("driver"));
+  EXPECT_EQ(remedy_of(check_recording(input), Error, "turns as if mounted"), "NO SUCH FINDING");
+}
+
 TEST(Checks, NamesALeverArmInMillimetresOnceForEachLens) {
   CameraCheck frames = agreeing(), events = agreeing(), other = agreeing();
   frames.camera.T_B_C = events.camera.T_B_C = SE3(Eigen::Quaterniond::Identity(), {60, 0, 0});

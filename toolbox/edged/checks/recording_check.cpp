@@ -92,7 +92,8 @@ RecordingCheck::RecordingCheck(const DatasetInfo& info, std::optional<CheckedCal
     : effort_(effort),
       given_(std::move(given)),
       collector_(during_run() ? without_further_cameras(info) : info),
-      stereo_(given_ ? given_->cameras : std::vector<RigCamera>()) {
+      stereo_(given_ ? given_->cameras : std::vector<RigCamera>()),
+      event_edges_(given_ ? given_->cameras : std::vector<RigCamera>()) {
   if (!given_) return;
   for (const RigCamera& camera : during_run() ? first_of_each_kind(given_->cameras) : given_->cameras) {
     CameraCheck check{camera, given_->has_extrinsics, std::nullopt, std::nullopt, least_turning(camera, during_run())};
@@ -104,6 +105,7 @@ RecordingCheck::RecordingCheck(const DatasetInfo& info, std::optional<CheckedCal
 
 void RecordingCheck::add(const Measurement& measurement) {
   stereo_.add(measurement);
+  event_edges_.add(measurement);
   const std::string* name = camera_of(measurement);
   const auto is_own = [name](const Camera& camera) { return camera.given().name == *name; };
   if (during_run() && name && std::ranges::none_of(cameras_, is_own)) return;
@@ -188,9 +190,9 @@ void RecordingCheck::compare(Camera& camera) {
 }
 
 std::vector<Finding> RecordingCheck::check(const RecordingStatistics& statistics, bool dropped_frames) const {
-  CheckInput input{statistics,         given_.has_value(),   {},
-                   dropped_frames,     accel_axes_.better(), given_ ? given_->noise : std::nullopt,
-                   stereo_.exchanged()};
+  CheckInput input{statistics,          given_.has_value(),   {},
+                   dropped_frames,      accel_axes_.better(), given_ ? given_->noise : std::nullopt,
+                   stereo_.exchanged(), event_edges_.better()};
   for (const Camera& camera : cameras_) {
     const RigCamera& given = camera.given();
     CameraCheck& check = input.cameras.emplace_back(

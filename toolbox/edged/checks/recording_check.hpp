@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edged/checks/agreement/accel_axes.hpp"
+#include "edged/checks/agreement/event_agreement.hpp"
 #include "edged/checks/agreement/external_agreement.hpp"
 #include "edged/checks/agreement/stereo_agreement.hpp"
 #include "edged/checks/checks.hpp"
@@ -92,6 +93,7 @@ class RecordingCheck {
   AccelAxes accel_axes_;
   ExternalCheck external_;
   StereoAgreement stereo_;
+  EventAgreement event_edges_;
   std::vector<Camera> cameras_;
   StreamSpan imu_, visual_;
   EventThinning thinning_;
