@@ -6,13 +6,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 
 #include "edged/camera/field_of_view.hpp"
 #include "edged/checks/agreement/lens_agreement.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
-#include "edged/core/statistics.hpp"
 
 namespace edged {
 namespace {

@@ -231,8 +231,7 @@ double grossly_off_deg(std::span<const Turn> turns, const GyroIntegral& gyro, co
   // Mirror recordings, two people in view included: correct calibrations reach 22 deg and 1.22 times the error, but not
   // both; those wrong by 90 deg have at least 80 deg and 1.20 times.
   constexpr double kGross = 45.0 * kDegree, kClearlyWorse = 1.15;
-  constexpr double kByChance =
-      3.0;  // standard deviations of the share, where turns that do not overlap are independent
+  constexpr double kByChance = 3.0;  // sigmas, where only turns that do not overlap are independent
   const double off = so3::log(given.T_B_C.rotation().conjugate() * Eigen::Quaterniond(found.R_B_C)).norm();
   std::vector<double> errors_found, errors_given;
   double balance = 0.0;  // of the turns that each explains better
