@@ -77,7 +77,7 @@ TEST_F(MaskOfACamera, IsRefusedWithItsKeyItsFileAndWhatToDo) {
 
 TEST_F(MaskOfACamera, APipeIsNoPicture) {
   ASSERT_EQ(::mkfifo((folder_.path() / "pipe.png").c_str(), 0600), 0);
-  EXPECT_THAT(refusal("    mask: pipe.png\n"), HasSubstr("pipe.png: no such picture"));
+  EXPECT_THAT(refusal("    mask: pipe.png\n"), HasSubstr("pipe.png: is no file but a pipe or a device"));
 }
 
 TEST_F(MaskOfACamera, RunsOfPixelsMustMakeUpTheImage) {
