@@ -90,12 +90,12 @@ void judge_scale(const RunStatistics& run, double max_sigma, std::vector<Finding
                    "move faster, use a second camera of known distance, or a height or velocity sensor"});
 }
 
-/// With --localize-only a loss is silence: no pose depends on dead reckoning.
-void judge_losses(const RunStatistics& run, bool localize_only, std::vector<Finding>& out) {
+/// With --localize-only a loss is silence: no pose depends on dead reckoning. explained: by a cause that is named.
+void judge_losses(const RunStatistics& run, bool localize_only, bool explained, std::vector<Finding>& out) {
   constexpr double kMostLost = 0.1;
   const Severity severe = localize_only ? Severity::Warning : Severity::Error;
   const double lost_s = run.time_in_s(TrackingStatus::Lost);
-  const std::string why = run.lost_because().empty() ? "" : ", the last time as " + run.lost_because();
+  const std::string why = explained || run.lost_because().empty() ? "" : ", the last time as " + run.lost_because();
   const std::string remedy =
       localize_only ? "there are no poses while the body is not localized in the map: see states.csv and run.log"
                     : "after a loss position and yaw are those of dead reckoning: see states.csv and run.log";
@@ -226,7 +226,7 @@ void judge_run(RunSummary& s, const SourceOptions& source, Ending ending) {
       judge_lens_and_position(found, verdict.findings);
     }
   if (ever_good) {
-    judge_losses(statistics, s.run.localize_only, verdict.findings);
+    judge_losses(statistics, s.run.localize_only, explained, verdict.findings);
     if (!explained) {
       judge_scale(statistics, s.run.max_scale_sigma, verdict.findings);
       judge_biases(statistics, verdict.findings);
