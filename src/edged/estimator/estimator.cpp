@@ -82,7 +82,6 @@ double inflation(const Window& window, const EstimatorConfig& config) {
 Estimator::Estimator(const Rig& rig, const ImuNoise& noise, const EstimatorConfig& config,
                      std::vector<IntrinsicsCorrection> intrinsics, const std::optional<BiasPrior>& biases)
     : config_(config),
-      calibrated_(noise),
       window_(rig, {0.0, 0.0}, config.depth_factor),
       standstill_(config.standstill, noise),
       external_(config.height, config.velocity),
@@ -107,7 +106,7 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   const bool new_depth = add_depth(input);
   window_.relinearise_intrinsics();
   predict_observations(window_);
-  optimize(result, input.motion.noise());
+  optimize(result);
   if (new_depth) depth_scale_ = estimate_scale(window_);
   adapt_noise(result.imu_strain);
   result.marginalized_keyframes = slide();
@@ -286,9 +285,9 @@ bool Estimator::add_depth(const EstimatorInput& input) {
 
 /// While the IMU shakes, residuals that are too large mean that its slow noise is larger than its fast one shows. Then
 /// that holds for the whole window. Returns whether the solution is usable.
-bool Estimator::solve_window(const ImuNoise& in_use) {
+bool Estimator::solve_window() {
   bool usable = solve(window_, config_.iterations).usable;
-  if (in_use.accel_noise > calibrated_.accel_noise) {
+  if (standstill_.mean_accel_sigma(1.0) > 0.0) {
     for (int i = 0; i < kEstimatorTuning.noise_rounds && usable && raise_imu_noise(); ++i)
       usable = solve(window_, config_.iterations).usable;
   } else if (window_.imu_noise_scale() != 1.0) {
@@ -305,8 +304,8 @@ bool Estimator::raise_imu_noise() {
   return window_.imu_noise_scale() > before;
 }
 
-void Estimator::optimize(EstimatorResult& result, const ImuNoise& in_use) {
-  const bool usable = solve_window(in_use);
+void Estimator::optimize(EstimatorResult& result) {
+  const bool usable = solve_window();
   result.plausible = usable && plausible(newest());
   const std::vector<FeatureId> outliers = remove_outliers(window_, config_.landmarks);
   result.outliers.insert(result.outliers.end(), outliers.begin(), outliers.end());

@@ -79,14 +79,13 @@ class Estimator {
   void append(const EstimatorInput& input, std::optional<double> turning);
   std::optional<double> turning_in_place(const EstimatorInput& input) const;
   bool add_depth(const EstimatorInput& input);
-  bool solve_window(const ImuNoise& in_use);
+  bool solve_window();
   bool raise_imu_noise();
-  void optimize(EstimatorResult& result, const ImuNoise& in_use);
+  void optimize(EstimatorResult& result);
   void adapt_noise(double imu_strain);
   std::vector<MarginalizedKeyframe> slide();
 
   EstimatorConfig config_;
-  ImuNoise calibrated_;
   Window window_;
   StandstillDetector standstill_;
   ExternalFactors external_;

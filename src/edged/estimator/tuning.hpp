@@ -110,8 +110,8 @@ struct InitializationTuning {
   double gauge_sigma_m = 1e-4, gauge_sigma_rad = 1e-4;  ///< hold position and yaw of the first state
   double zero_velocity_sigma = 0.01;                    ///< [m/s] of a body at rest
   double rest_gyro_bias_sigma = 0.005;                  ///< [rad/s] where the rest has measured the bias
-  Duration noise_measured = std::chrono::milliseconds(
-      900);  ///< of IMU before a start in a rest that shakes: the mean is as uncertain as that [022]
+  /// IMU before a start in a rest that shakes, whose mean is as uncertain as its noise [022].
+  Duration noise_measured = std::chrono::milliseconds(900);
   double rest_accel_sigma = 0.03;      ///< [m/s^2] of the mean acceleration at rest: a calm IMU may still move a little
   double max_gravity_error = 1.0;      ///< [m/s^2] of that mean: beyond it the unit is wrong, ...
   double gravity_sigmas = 3.5;         ///< ... if vibration does not explain it

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Events of a picture that moves, some of them elsewhere than the frames say.
+// Events of a picture that moves, some of them at other pixels than the frames say.
 #include "edged/checks/agreement/event_agreement.hpp"
 
 #include <gtest/gtest.h>
