@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "commands/ros_arguments.hpp"
 #include "common/command.hpp"
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
@@ -78,6 +79,7 @@ struct Ros2Options {
   std::string rig, mode, distribution;
   ConfigSource config;
   Ros2Place place;
+  RosArguments ros;
   bool use_sim_time = false;
   bool print_config = false;
   bool quiet = false;
@@ -87,6 +89,7 @@ Ros2Config config_of(const Ros2Options& options) {
   Ros2Config config;
   ConfigFields fields = ConfigFields::of(config);
   if (!options.config.file.empty()) fields.load(options.config.file);
+  set_parameters(fields, options.ros, names_of(options.place).full_node_name());
   for (const std::string& assignment : options.config.assignments) fields.set(assignment);
   if (!options.rig.empty()) fields.set("rig", options.rig);
   if (!options.mode.empty()) fields.set("mode", options.mode);
@@ -110,13 +113,14 @@ int run_ros2(const Ros2Options& options) {
   if (config.rig.empty())
     throw InputError("--rig is missing: give the name of a rig that ships, or a calibration file");
   const Calibration calibration = node::load_node_rig(config);
-  if (!options.quiet) show_progress_in_log();
+  if (!options.quiet && !options.ros.quiet()) show_progress_in_log();
   catch_interrupts();
   const ros2::Discovery discovery = discovery_of(options.place);
   ros2::Ros2Transport transport(
       {discovery, names_of(options.place), config.reliable, config.use_sim_time, options.distribution});
   spdlog::info(fmt::format("rig {}, mode {}, domain {}", config.rig, mode_name(config.mode), discovery.domain));
   node::Node node(config, calibration, transport);
+  transport.check_remappings();
   print_counters(node.run([] { return interrupt_signal() != 0; }));
   return kExitOk;
 }
@@ -186,6 +190,7 @@ void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
   ros2->add_option("--mode", options->mode, "Sensors used beside the IMU: events, frames or fused [fused]");
   add_config_options(*ros2, options->config);
   add_ros2_place(*ros2, options->place, "edged");
+  add_ros_arguments(*ros2, options->ros);
   ros2->add_flag("--use-sim-time", options->use_sim_time, "Time from /clock");
   ros2->add_option("--ros-distro", options->distribution,
                    "Show in `ros2 node list` of humble, iron, jazzy, kilted, lyrical or rolling; the wrong one crashes "
@@ -200,6 +205,7 @@ void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
       "Obeys ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY, CYCLONEDDS_URI.\n"
       "Examples:\n"
       "  edged ros2 --rig davis240c_ecd -r events:=/event_camera/events -r image:=/camera/image_raw -r imu:=/imu/data\n"
+      "  edged ros2 --ros-args -p rig:=head.yaml -p base_frame:=base_link -r imu:=/imu/data\n"
       "  edged ros2 --rig head.yaml --mode events --set packets.max_interval_s=0.03 --namespace /drone\n"
       "Ctrl-C ends it with the counters of what came, and exit code 0.");
   ros2->callback([options, &chosen] { chosen = [options] { return run_ros2(*options); }; });

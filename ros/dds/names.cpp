@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -116,8 +118,16 @@ Names::Names(std::string name_space, std::string node, const std::vector<std::st
 
 std::string Names::full_name(const std::string& topic) const {
   std::string name = expand(topic);
+  asked_for_.insert(name);
   const auto remapped = remapped_.find(name);
   return remapped == remapped_.end() ? name : remapped->second;
+}
+
+void Names::check_remappings() const {
+  for (const auto& [from, to] : remapped_)
+    if (!asked_for_.contains(from))
+      throw InputError::format("remapping {}:={}: there is no topic {}, but {}", from, to, from,
+                               fmt::join(asked_for_, ", "));
 }
 
 std::string Names::expand(const std::string& topic) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,10 @@ class Names {
   Names(std::string name_space, std::string node, const std::vector<std::string>& remappings);
 
   std::string full_name(const std::string& topic) const;
+  /// Throws InputError for a remapping of a name that full_name() was never asked for, with those that it was.
+  void check_remappings() const;
+  /// "/robot/edged"
+  std::string full_node_name() const { return expand("~/").substr(0, expand("~/").size() - 1); }
   const std::string& name_space() const { return name_space_; }  ///< "/" or "/robot"
   const std::string& node() const { return node_; }
 
@@ -44,6 +49,7 @@ class Names {
 
   std::string name_space_, node_;
   std::map<std::string, std::string> remapped_;  ///< full names
+  mutable std::set<std::string> asked_for_;      ///< before remapping
 };
 
 }  // namespace edged::ros2

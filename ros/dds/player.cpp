@@ -51,9 +51,12 @@ Player::Player(const PlaySetup& setup, WriterSetup recording)
   add_cameras(Modality::Events, info.has_events, "event_camera_msgs/EventPacket");
   add_cameras(Modality::Frames, info.has_frames, "sensor_msgs/Image");
   if (info.has_imu) add_topic("imu", "sensor_msgs/Imu");
-  for (std::size_t i = 0; i < external_sensors().size(); ++i)
-    add_topic(std::string(external_sensors()[i].name), external_type(i));
+  for (std::size_t i = 0; i < external_sensors().size(); ++i) {
+    const std::string name(external_sensors()[i].name);
+    if (std::ranges::count(info.external, name) > 0) add_topic(name, external_type(i));
+  }
   add_topic(kClock, "rosgraph_msgs/Clock");
+  setup_.names->check_remappings();
 }
 
 /// The first of a kind has a short name, another its own.

@@ -67,7 +67,19 @@ std::unique_ptr<node::Publisher> Ros2Transport::advertise(const node::Advertised
 
 void Ros2Transport::subscribe(const std::string& topic, Role role, Receive receive) {
   const Qos qos{.reliable = reliable_, .depth = role == Role::Frames ? kFrames : kSamples};
-  wanted_.push_back({topic, qos, [role](const std::string& type) { return can_take(type, role); },
+  add_subscription(
+      topic, qos, [role](const std::string& type) { return can_take(type, role); }, std::move(receive));
+}
+
+void Ros2Transport::subscribe_latched(const std::string& topic, const std::string& wanted, Receive receive) {
+  const Qos qos{.latched = true, .depth = kSamples};
+  add_subscription(
+      topic, qos, [wanted](const std::string& type) { return type == wanted; }, std::move(receive));
+}
+
+void Ros2Transport::add_subscription(const std::string& topic, const Qos& qos,
+                                     std::function<bool(const std::string&)> accepts, Receive receive) {
+  wanted_.push_back({topic, qos, std::move(accepts),
                      [receive = std::move(receive)](const std::string& type, ByteSpan cdr) {
                        receive({type, "", cdr});
                      },

@@ -38,13 +38,18 @@ class Ros2Transport final : public node::Transport {
   Timestamp now() const override;
   std::unique_ptr<node::Publisher> advertise(const node::Advertised& topic) override;
   std::string full_name(const std::string& topic) const override { return names_.full_name(topic); }
+  /// Once all topics are subscribed and advertised. Throws InputError as Names.
+  void check_remappings() const { names_.check_remappings(); }
   void subscribe(const std::string& topic, Role role, Receive receive) override;
+  void subscribe_latched(const std::string& topic, const std::string& type, Receive receive) override;
   void start() override;
   void stop() override;
   bool ok() const override { return true; }
   std::map<std::string, node::TopicTroubles> troubles() const override;
 
  private:
+  void add_subscription(const std::string& topic, const Qos& qos, std::function<bool(const std::string&)> accepts,
+                        Receive receive);
   void update_graph();
   void note_clock(ByteSpan cdr);
 

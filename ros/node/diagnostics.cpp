@@ -28,6 +28,7 @@ std::string summary(const NodeHealth& health) {
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
     if (!input.transport_trouble.empty()) text += fmt::format("; {}: {}", topic, input.transport_trouble);
   }
+  if (!health.missing_transform.empty()) text += "; " + health.missing_transform;
   if (health.newly_lost > 0) text += fmt::format("; {} measurements lost since the last report", health.newly_lost);
   if (health.newly_lost > 0 && health.dropped.events > 0)
     text += fmt::format("; too slow: {} % of all events dropped", dropped_percent(health));
@@ -38,7 +39,8 @@ Diagnosis::Level level_of(const NodeHealth& health) {
   if (health.status == TrackingStatus::Lost) return Diagnosis::Level::Error;
   const bool troubled =
       std::ranges::any_of(health.inputs, [](const auto& input) { return !input.second.transport_trouble.empty(); });
-  const bool fine = health.status == TrackingStatus::Good && health.newly_lost == 0 && health.wrong_clocks == 0;
+  const bool fine = health.status == TrackingStatus::Good && health.newly_lost == 0 && health.wrong_clocks == 0 &&
+                    health.missing_transform.empty();
   return fine && !troubled ? Diagnosis::Level::Ok : Diagnosis::Level::Warning;
 }
 

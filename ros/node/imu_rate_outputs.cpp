@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "edged/core/check.hpp"
 
@@ -18,8 +19,9 @@ constexpr Duration kRecentImu = std::chrono::seconds(2);
 
 }  // namespace
 
-ImuRateOutputs::ImuRateOutputs(Transport& transport, const NodeConfig& config)
-    : format_{transport.wire(), config.frames},
+ImuRateOutputs::ImuRateOutputs(Transport& transport, const NodeConfig& config, double gyro_noise)
+    : format_{transport.wire(), config.frame_names()},
+      gyro_noise_(gyro_noise),
       topic_(transport.advertise({"~/prediction", "nav_msgs/Odometry", kImuQueue})),
       stream_(config.autopilot) {
   if (!config.mavlink.empty()) mavlink_ = std::make_unique<MavlinkOutput>(config.mavlink, config.autopilot);
@@ -35,7 +37,9 @@ void ImuRateOutputs::add(const ImuSample& sample) {
   const std::optional<NavState> state = prediction_.newest();
   if (!state || state->t != sample.t) return;  // a late sample is ignored
   if (mavlink_ || px4_) send_to_autopilot(*state, sample);
-  topic_->publish(odometry_message(format_, {*state, sample.gyro_B, covariance_}));
+  if (!T_B_base_) return;
+  const Estimate base = at(*T_B_base_, {*state, sample.gyro_B, covariance_, gyro_sigma()});
+  topic_->publish(odometry_message(format_, in(T_map_odom_.inverse(), base)));
 }
 
 void ImuRateOutputs::send_to_autopilot(const NavState& state, const ImuSample& sample) {
@@ -59,19 +63,29 @@ void ImuRateOutputs::keep(const ImuSample& sample) {
   while (sample.t - recent_.front().t > kRecentImu) recent_.pop_front();
 }
 
-void ImuRateOutputs::note(const Step& step) {
+void ImuRateOutputs::note(const Step& step, const SE3& T_map_odom, const std::optional<SE3>& T_B_base) {
   const std::lock_guard lock(mutex_);
+  T_map_odom_ = T_map_odom;
+  T_B_base_ = T_B_base;
   prediction_.correct(is_tracking(step.status) ? std::optional(step.state) : std::nullopt);
   if (mavlink_) mavlink_->note(step);
   stream_.note(step);
   covariance_ = step.covariance;
 }
 
-Eigen::Vector3d ImuRateOutputs::gyro_at(Timestamp t) const {
+Estimate ImuRateOutputs::estimate_of(const Step& step) const {
   const std::lock_guard lock(mutex_);
-  const auto last =
-      std::ranges::find_if(recent_.rbegin(), recent_.rend(), [t](const ImuSample& sample) { return sample.t <= t; });
-  return last == recent_.rend() ? Eigen::Vector3d::Zero().eval() : last->gyro_B;
+  const auto last = std::ranges::find_if(recent_.rbegin(), recent_.rend(),
+                                         [&step](const ImuSample& sample) { return sample.t <= step.t; });
+  const Eigen::Vector3d gyro_B = last == recent_.rend() ? Eigen::Vector3d::Zero().eval() : last->gyro_B;
+  return {step.state, gyro_B, step.covariance, gyro_sigma()};
+}
+
+/// That of one sample, by the noise density and the rate of the IMU [rad/s].
+double ImuRateOutputs::gyro_sigma() const {
+  if (recent_.size() < 2) return 0.0;
+  const double span_s = to_seconds(recent_.back().t - recent_.front().t);
+  return gyro_noise_ * std::sqrt(static_cast<double>(recent_.size() - 1) / span_s);
 }
 
 std::optional<Timestamp> ImuRateOutputs::newest() const {

@@ -21,24 +21,26 @@ namespace edged::node {
 /// From any thread.
 class ImuRateOutputs {
  public:
-  /// Throws InputError where config.mavlink cannot be opened, config.autopilot is wrong, or ROS 1 is to have PX4's
-  /// topic.
-  ImuRateOutputs(Transport& transport, const NodeConfig& config);
+  /// gyro_noise: density [rad/s/sqrt(Hz)]. Throws InputError where config.mavlink cannot be opened, config.autopilot is
+  /// wrong, or ROS 1 is to have PX4's topic.
+  ImuRateOutputs(Transport& transport, const NodeConfig& config, double gyro_noise);
 
   /// A sample that has just arrived.
   void add(const ImuSample& sample);
-  /// Each step, in order.
-  void note(const Step& step);
+  /// Each step, in order. The prediction is that of the base in odom; without T_B_base there is none.
+  void note(const Step& step, const SE3& T_map_odom, const std::optional<SE3>& T_B_base);
 
-  /// The rate measured at t [rad/s]: of the sample that was the newest then.
-  Eigen::Vector3d gyro_at(Timestamp t) const;
+  /// The body in the map, with the rate that was measured then: that of the newest sample before.
+  Estimate estimate_of(const Step& step) const;
   std::optional<Timestamp> newest() const;
 
  private:
   void keep(const ImuSample& sample);
+  double gyro_sigma() const;
   void send_to_autopilot(const NavState& state, const ImuSample& sample);
 
   const Format format_;
+  const double gyro_noise_;
   const std::unique_ptr<Publisher> topic_;
   std::unique_ptr<Publisher> px4_;
   std::unique_ptr<MavlinkOutput> mavlink_;
@@ -48,6 +50,8 @@ class ImuRateOutputs {
   VehicleStream stream_;  ///< for PX4
   StatePrediction prediction_;
   std::optional<StateCovariance> covariance_;
+  SE3 T_map_odom_;
+  std::optional<SE3> T_B_base_;
   std::deque<ImuSample> recent_;
 };
 

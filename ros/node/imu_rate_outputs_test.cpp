@@ -10,6 +10,8 @@
 namespace edged::node {
 namespace {
 
+constexpr double kGyroNoise = 1e-4;
+
 NodeConfig with_px4() {
   NodeConfig config;
   config.publish_px4 = true;
@@ -25,7 +27,7 @@ Step step_at(int ms, TrackingStatus status) {
 
 TEST(ImuRateOutputs, GiveStatesAtEachSampleAndToPx4AtItsRateWhileThereIsAPose) {
   KeptTransport transport(Wire::Cdr);
-  ImuRateOutputs outputs(transport, with_px4());
+  ImuRateOutputs outputs(transport, with_px4(), kGyroNoise);
   const std::string px4 = "/fmu/in/vehicle_visual_odometry";
   EXPECT_THAT(transport.topics,
               testing::ElementsAre("~/prediction nav_msgs/Odometry", px4 + " px4_msgs/VehicleOdometry"));
@@ -36,24 +38,35 @@ TEST(ImuRateOutputs, GiveStatesAtEachSampleAndToPx4AtItsRateWhileThereIsAPose) {
   };
   fly_a_second(0);
   EXPECT_EQ(transport.counts[px4] + transport.counts["~/prediction"], 0U);
-  outputs.note(step_at(999, TrackingStatus::Good));
+  outputs.note(step_at(999, TrackingStatus::Good), SE3(), SE3());
   fly_a_second(1000);
   EXPECT_EQ(transport.counts["~/prediction"], 1000U);
   EXPECT_NEAR(static_cast<double>(transport.counts[px4]), AutopilotConfig().rate_hz, 1.0);
   EXPECT_EQ(transport.last[px4].size(), 4U + 8 + 8 + 4 + 12 + 16 + 4 + 5 * 12 + 2);  // kind and fields, aligned
   EXPECT_EQ(outputs.newest(), timestamp_from_ns(1'999'000'000));
-  EXPECT_EQ(outputs.gyro_at(timestamp_from_ns(1'500'500'000)), Eigen::Vector3d(0.0, 0.0, 0.1));
-  EXPECT_EQ(outputs.gyro_at(timestamp_from_ns(-1)), Eigen::Vector3d::Zero()) << "before the first";
-  outputs.note(step_at(1999, TrackingStatus::Lost));
+  const Estimate estimate = outputs.estimate_of(step_at(1500, TrackingStatus::Good));
+  EXPECT_EQ(estimate.gyro_B, Eigen::Vector3d(0.0, 0.0, 0.1));
+  EXPECT_NEAR(estimate.gyro_sigma, kGyroNoise * std::sqrt(1000.0), 1e-6) << "1 kHz";
+  EXPECT_EQ(outputs.estimate_of(step_at(-1, TrackingStatus::Good)).gyro_B, Eigen::Vector3d::Zero());
+  outputs.note(step_at(1999, TrackingStatus::Lost), SE3(), SE3());
   fly_a_second(2000);
   EXPECT_EQ(transport.counts[px4] + transport.counts["~/prediction"], 0U);
 }
 
+TEST(ImuRateOutputs, PredictNothingWhileThePlaceOfTheBaseIsUnknown) {
+  KeptTransport transport(Wire::Cdr);
+  ImuRateOutputs outputs(transport, NodeConfig(), kGyroNoise);
+  outputs.add({timestamp_from_ns(0), {0.0, 0.0, 0.1}, {0.0, 0.0, 9.81}});
+  outputs.note(step_at(0, TrackingStatus::Good), SE3(), std::nullopt);
+  outputs.add({timestamp_from_ns(1'000'000), {0.0, 0.0, 0.1}, {0.0, 0.0, 9.81}});
+  EXPECT_EQ(transport.counts["~/prediction"], 0U);
+}
+
 TEST(ImuRateOutputs, OfRos1HaveNoTopicOfPx4) {
   KeptTransport transport(Wire::Ros1);
-  EXPECT_THROW(ImuRateOutputs(transport, with_px4()), InputError);
+  EXPECT_THROW(ImuRateOutputs(transport, with_px4(), kGyroNoise), InputError);
   transport.topics.clear();
-  EXPECT_NO_THROW(ImuRateOutputs(transport, NodeConfig()));
+  EXPECT_NO_THROW(ImuRateOutputs(transport, NodeConfig(), kGyroNoise));
   EXPECT_THAT(transport.topics, testing::ElementsAre("~/prediction nav_msgs/Odometry"));
 }
 

@@ -21,7 +21,7 @@ constexpr Duration kMapPeriod = std::chrono::seconds(2);
 }  // namespace
 
 OccupancyOutputs::OccupancyOutputs(Transport& transport, const NodeConfig& config)
-    : format_{transport.wire(), config.frames},
+    : format_{transport.wire(), config.frame_names()},
       voxel_m_(config.occupancy.voxel_m),
       heights_(heights_of(config.occupancy)),
       grid_(transport.advertise({"~/occupancy", "nav_msgs/OccupancyGrid", 1, true})),
@@ -51,7 +51,7 @@ void OccupancyOutputs::publish(const OccupancyMap& map) {
 }
 
 MapOutputs::MapOutputs(Transport& transport, const NodeConfig& config)
-    : format_{transport.wire(), config.frames},
+    : format_{transport.wire(), config.frame_names()},
       landmarks_(transport.advertise({"~/landmarks", "sensor_msgs/PointCloud2", kLandmarksQueue})),
       map_(transport.advertise({"~/map", "sensor_msgs/PointCloud2", 1})),
       points_(kMostMapPoints),

@@ -52,6 +52,7 @@ RowMajor6 pose_covariance(const Estimate& estimate) {
 
 RowMajor6 twist_covariance(const Estimate& estimate) {
   RowMajor6 P = RowMajor6::Zero();
+  P.bottomRightCorner<3, 3>().diagonal().setConstant(estimate.gyro_sigma * estimate.gyro_sigma);
   if (!estimate.covariance) return P;
   const Eigen::Matrix3d R_W_B = estimate.state.T_W_B.rotation().toRotationMatrix();
   P.topLeftCorner<3, 3>() = R_W_B.transpose() * estimate.covariance->velocity * R_W_B;
@@ -86,10 +87,39 @@ cv::Mat with_tracks(const cv::Mat& image, std::span<const Track> tracks) {
 
 }  // namespace
 
+Estimate at(const SE3& T_B_C, const Estimate& of_body) {
+  Estimate moved = of_body;
+  const Eigen::Matrix3d R_W_B = of_body.state.T_W_B.R(), R_C_B = T_B_C.R().transpose();
+  const Eigen::Vector3d omega_B = of_body.gyro_B - of_body.state.bias_gyro;
+  const Eigen::Vector3d by_turning = omega_B.cross(T_B_C.translation());  // velocity of C against B, in B
+  moved.state.T_W_B = of_body.state.T_W_B * T_B_C;
+  moved.state.v_W += R_W_B * by_turning;
+  moved.gyro_B = R_C_B * omega_B;
+  moved.state.bias_gyro.setZero();
+  if (!moved.covariance) return moved;
+  auto& [position, rotation, velocity] = *moved.covariance;
+  const Eigen::Matrix3d p_by_turn = R_W_B * skew(T_B_C.translation()), v_by_turn = R_W_B * skew(by_turning);
+  position += p_by_turn * rotation * p_by_turn.transpose();
+  velocity += v_by_turn * rotation * v_by_turn.transpose();
+  rotation = (R_C_B * rotation * R_C_B.transpose()).eval();
+  return moved;
+}
+
+Estimate in(const SE3& T_V_W, const Estimate& in_W) {
+  Estimate moved = in_W;
+  const Eigen::Matrix3d R = T_V_W.R();
+  moved.state.T_W_B = T_V_W * in_W.state.T_W_B;
+  moved.state.v_W = R * in_W.state.v_W;
+  if (!moved.covariance) return moved;
+  moved.covariance->position = R * in_W.covariance->position * R.transpose();
+  moved.covariance->velocity = R * in_W.covariance->velocity * R.transpose();
+  return moved;
+}
+
 std::string odometry_message(const Format& format, const Estimate& estimate) {
   const NavState& state = estimate.state;
-  WireWriter out = message_at(format.wire, state.t, format.frames.world);
-  out.text(format.frames.body);
+  WireWriter out = message_at(format.wire, state.t, format.frames.odom);
+  out.text(format.frames.base);
   write_pose(out, state.T_W_B);
   write_covariance(out, pose_covariance(estimate));
   write_vector(out, state.T_W_B.rotation().conjugate() * state.v_W);
@@ -99,41 +129,34 @@ std::string odometry_message(const Format& format, const Estimate& estimate) {
 }
 
 std::string pose_message(const Format& format, const Estimate& estimate) {
-  WireWriter out = message_at(format.wire, estimate.state.t, format.frames.world);
+  WireWriter out = message_at(format.wire, estimate.state.t, format.frames.map);
   write_pose(out, estimate.state.T_W_B);
   write_covariance(out, pose_covariance(estimate));
   return out.message();
 }
 
 std::string path_message(const Format& format, Timestamp t, const std::deque<StampedPose>& poses) {
-  WireWriter out = message_at(format.wire, t, format.frames.world);
+  WireWriter out = message_at(format.wire, t, format.frames.map);
   write_counts(out, {poses.size()});
   for (const StampedPose& pose : poses) {
-    write_header(out, format.wire, pose.t, format.frames.world);
+    write_header(out, format.wire, pose.t, format.frames.map);
     write_pose(out, pose.T);
   }
   return out.message();
 }
 
-std::string body_transform_message(const Format& format, const NavState& state) {
-  WireWriter out(format.wire);
-  write_counts(out, {1});
-  write_transform(out, format.wire, state.t, format.frames.world, format.frames.body, state.T_W_B);
-  return out.message();
-}
-
-std::string camera_transforms_message(const Format& format, Timestamp t, const Rig& rig) {
-  WireWriter out(format.wire);
-  write_counts(out, {rig.cameras.size()});
-  for (const RigCamera& camera : rig.cameras)
-    write_transform(out, format.wire, t, format.frames.body, camera.name, camera.T_B_C);
+std::string transforms_message(Wire wire, Timestamp t, std::span<const FrameTransform> transforms) {
+  WireWriter out(wire);
+  write_counts(out, {transforms.size()});
+  for (const auto& [parent, child, T_parent_child] : transforms)
+    write_transform(out, wire, t, parent, child, T_parent_child);
   return out.message();
 }
 
 std::string landmarks_message(const Format& format, Timestamp t, std::span<const Landmark> landmarks) {
   constexpr std::uint8_t kUint32 = 6, kFloat32 = 7;  // of sensor_msgs/PointField
   constexpr std::size_t kPointBytes = 16;
-  WireWriter out = message_at(format.wire, t, format.frames.world);
+  WireWriter out = message_at(format.wire, t, format.frames.map);
   write_counts(out, {1, landmarks.size(), 4});  // height: not in the order of an image; width; fields
   write_field(out, "x", 0, kFloat32);
   write_field(out, "y", 4, kFloat32);
@@ -152,7 +175,7 @@ std::string landmarks_message(const Format& format, Timestamp t, std::span<const
 }
 
 std::string occupancy_message(const Format& format, Timestamp t, const OccupancySlice& slice, double voxel_m) {
-  WireWriter out = message_at(format.wire, t, format.frames.world);
+  WireWriter out = message_at(format.wire, t, format.frames.map);
   out.time(std::clamp(t, timestamp_from_ns(0), latest_stamp(format.wire)));
   out.number(static_cast<float>(voxel_m));
   write_counts(out, {static_cast<std::size_t>(slice.cells.cols), static_cast<std::size_t>(slice.cells.rows)});
@@ -164,7 +187,7 @@ std::string occupancy_message(const Format& format, Timestamp t, const Occupancy
 std::string octomap_message(const Format& format, Timestamp t, const octomap::OcTree& tree) {
   std::ostringstream voxels;
   tree.writeBinaryData(voxels);
-  WireWriter out = message_at(format.wire, t, format.frames.world);
+  WireWriter out = message_at(format.wire, t, format.frames.map);
   out.number(std::uint8_t{1});  // binary
   out.text(tree.getTreeType());
   out.number(tree.getResolution());
@@ -172,9 +195,9 @@ std::string octomap_message(const Format& format, Timestamp t, const octomap::Oc
   return out.message();
 }
 
-std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera) {
+std::string tracks_message(const Format& format, Timestamp t, const CameraStep& camera) {
   const cv::Mat rendered = with_tracks(camera.image, camera.tracks);
-  WireWriter out = message_at(wire, t, camera.name);
+  WireWriter out = message_at(format.wire, t, format.frames.prefix + camera.name);
   write_counts(out, {static_cast<std::size_t>(rendered.rows), static_cast<std::size_t>(rendered.cols)});
   out.text("bgr8");
   out.number(std::uint8_t{0});  // little-endian

@@ -26,30 +26,38 @@ namespace edged::node {
 /// What all messages have in common.
 struct Format {
   Wire wire = Wire::Cdr;
-  FrameNames frames = {};
+  FrameNames frames = NodeConfig().frame_names();
 };
 
-/// A state as it is published.
+/// A state as it is published: of a frame on the body, in map or odom (W of its state).
 struct Estimate {
   NavState state;
   Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();  ///< [rad/s], measured at that time
   std::optional<StateCovariance> covariance = {};
+  double gyro_sigma = 0.0;  ///< [rad/s] of gyro_B; 0: unknown
 };
 
-/// nav_msgs/Odometry: the pose of the body in the world, and its velocities in the body's axes. The covariance of the
-/// pose is about the axes of the world, as ROS wants it; zeros are unknown.
+/// The same motion of another frame on the body. T_B_C: of that frame.
+Estimate at(const SE3& T_B_C, const Estimate& of_body);
+/// The same state in another frame of the world. T_V_W: of the present one in that.
+Estimate in(const SE3& T_V_W, const Estimate& in_W);
+
+/// nav_msgs/Odometry: the pose of the base in odom, and its velocities in the base's axes. The covariance of the pose
+/// is about the axes of odom, as ROS wants it; zeros are unknown.
 std::string odometry_message(const Format& format, const Estimate& estimate);
-/// geometry_msgs/PoseWithCovarianceStamped: pose and covariance as in odometry_message.
+/// geometry_msgs/PoseWithCovarianceStamped: pose and covariance as in odometry_message, but in the map.
 std::string pose_message(const Format& format, const Estimate& estimate);
-/// nav_msgs/Path.
+/// nav_msgs/Path, in the map.
 std::string path_message(const Format& format, Timestamp t, const std::deque<StampedPose>& poses);
 
-/// tf2_msgs/TFMessage: from the world to the body.
-std::string body_transform_message(const Format& format, const NavState& state);
-/// tf2_msgs/TFMessage: from the body to each camera as calibrated so far.
-std::string camera_transforms_message(const Format& format, Timestamp t, const Rig& rig);
+struct FrameTransform {
+  std::string parent, child;
+  SE3 T_parent_child;
+};
+/// tf2_msgs/TFMessage.
+std::string transforms_message(Wire wire, Timestamp t, std::span<const FrameTransform> transforms);
 
-/// sensor_msgs/PointCloud2: points with x, y, z in the world, and the id of the feature (its lower 32 bits).
+/// sensor_msgs/PointCloud2: points with x, y, z in the map, and the id of the feature (its lower 32 bits).
 std::string landmarks_message(const Format& format, Timestamp t, std::span<const Landmark> landmarks);
 
 /// nav_msgs/OccupancyGrid: a slice whose cells have edges of voxel_m, at height 0.
@@ -60,7 +68,7 @@ std::string occupancy_message(const Format& format, Timestamp t, const Occupancy
 std::string octomap_message(const Format& format, Timestamp t, const octomap::OcTree& tree);
 
 /// sensor_msgs/Image (bgr8): the image (CV_8UC1) with each feature, and where it came from since the image before.
-std::string tracks_message(Wire wire, Timestamp t, const CameraStep& camera);
+std::string tracks_message(const Format& format, Timestamp t, const CameraStep& camera);
 
 /// px4_msgs/VehicleOdometry of ROS 2.
 std::string vehicle_odometry_message(const VehicleOdometry& odometry);

@@ -50,7 +50,7 @@ OdometryFields odometry_fields(WireReader reader) {
   return fields;
 }
 
-TEST_P(RosMessages, OdometryHasThePoseInTheWorldAndTheVelocitiesInTheBody) {
+TEST_P(RosMessages, OdometryHasThePoseInOdomAndTheVelocitiesInTheBase) {
   const std::string message = odometry_message({GetParam()}, turned_estimate());
   const OdometryFields odometry = odometry_fields(reader(message));
   EXPECT_EQ(odometry.stamp, turned_estimate().state.t);
@@ -85,22 +85,54 @@ TEST_P(RosMessages, CovariancesAreAboutTheAxesThatRosWants) {
   EXPECT_NEAR(odometry.twist_covariance[7], 7.0, 1e-12);
 }
 
-TEST_P(RosMessages, TransformsLeadFromTheWorldToTheBodyAndOnToEachCamera) {
-  Rig rig;
-  rig.cameras.push_back(
-      {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
-  const std::string body = body_transform_message({GetParam()}, turned_estimate().state);
-  WireReader to_body = reader(body);
-  EXPECT_EQ(to_body.number<std::uint32_t>(), 1U);
-  to_body.header();
-  EXPECT_EQ(to_body.text(), "body");
-  EXPECT_EQ(to_body.vector<3>().x(), 1.0);
-  const std::string cameras = camera_transforms_message({GetParam()}, Timestamp(), rig);
-  WireReader to_camera = reader(cameras);
-  EXPECT_EQ(to_camera.number<std::uint32_t>(), 1U);
-  to_camera.header();
-  EXPECT_EQ(to_camera.text(), "dvs");
-  EXPECT_EQ(to_camera.vector<3>().z(), 0.1);
+TEST_P(RosMessages, TransformsHaveParentsAndChildren) {
+  const std::vector<FrameTransform> tree{{"map", "odom", SE3()},
+                                         {"odom", "base_link", SE3(Eigen::Quaterniond::Identity(), {1.0, 2.0, 3.0})}};
+  const std::string message = transforms_message(GetParam(), timestamp_from_seconds(2), tree);
+  WireReader transforms = reader(message);
+  EXPECT_EQ(transforms.number<std::uint32_t>(), 2U);
+  EXPECT_EQ(transforms.header(), timestamp_from_seconds(2));
+  EXPECT_EQ(transforms.text(), "odom");
+  EXPECT_EQ(transforms.vector<7>()[6], 1.0);
+  transforms.header();
+  EXPECT_EQ(transforms.text(), "base_link");
+  EXPECT_EQ(transforms.vector<3>().z(), 3.0);
+}
+
+// On an arm of 1 m along the body's x, turned by 90 degrees about z: its x points along the body's y.
+const SE3 kArm(Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())), Eigen::Vector3d(1, 0, 0));
+
+TEST(Estimates, OfAnotherFrameOnTheBodyHaveItsPoseAndMotion) {
+  Estimate body = turned_estimate();
+  body.gyro_B = Eigen::Vector3d(0.1, 0.0, 2.0);  // less the bias: 2 rad/s about z
+  const Estimate base = at(kArm, body);
+  EXPECT_TRUE(base.state.T_W_B.translation().isApprox(Eigen::Vector3d(1, 3, 3)));
+  EXPECT_TRUE(base.state.v_W.isApprox(Eigen::Vector3d(-2, 5, 0))) << base.state.v_W.transpose();
+  EXPECT_TRUE(base.gyro_B.isApprox(Eigen::Vector3d(0, 0, 2)));
+}
+
+TEST(Estimates, OfAnotherFrameAreAsUncertainAsTheArmIsTurned) {
+  Estimate body = turned_estimate();
+  body.gyro_B.x() = body.state.bias_gyro.x();
+  body.covariance =
+      StateCovariance{Eigen::Matrix3d::Zero(), Eigen::Vector3d(1, 2, 3).asDiagonal(), Eigen::Matrix3d::Zero()};
+  const Estimate base = at(kArm, body);
+  // Turned about the body's y and z, the end of the arm moves along its z and y: the world's z and -x.
+  EXPECT_TRUE(base.covariance->position.isApprox(Eigen::Vector3d(3, 0, 2).asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(base.covariance->rotation.isApprox(Eigen::Vector3d(2, 1, 3).asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(base.covariance->velocity.isZero(1e-12));
+}
+
+TEST(Estimates, InAnotherFrameOfTheWorldAreTurnedWithIt) {
+  const SE3 T_V_W(Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())), Eigen::Vector3d(10, 0, 0));
+  Estimate estimate = turned_estimate();
+  estimate.covariance = StateCovariance{Eigen::Vector3d(1, 2, 3).asDiagonal(), Eigen::Matrix3d::Identity(),
+                                        Eigen::Vector3d(4, 5, 6).asDiagonal()};
+  const Estimate moved = in(T_V_W, estimate);
+  EXPECT_TRUE(moved.state.T_W_B.translation().isApprox(Eigen::Vector3d(8, 1, 3)));
+  EXPECT_TRUE(moved.state.v_W.isApprox(Eigen::Vector3d(-5, 0, 0)));
+  EXPECT_NEAR(moved.covariance->position(0, 0), 2.0, 1e-12);
+  EXPECT_NEAR(moved.covariance->velocity(1, 1), 4.0, 1e-12);
 }
 
 TEST_P(RosMessages, TracksAreRenderedOnACopyOfTheImage) {
@@ -109,7 +141,7 @@ TEST_P(RosMessages, TracksAreRenderedOnACopyOfTheImage) {
   track.pixel = {15, 10};
   track.previous_pixel = {5, 10};
   const std::string message =
-      tracks_message(GetParam(), timestamp_from_seconds(2), {"cam", Modality::Frames, image, {track}});
+      tracks_message({GetParam()}, timestamp_from_seconds(2), {"cam", Modality::Frames, image, {track}});
   const cv::Mat gray = read_image(reader(message)).image;
   EXPECT_EQ(gray.size(), image.size());
   EXPECT_EQ(gray.at<std::uint8_t>(0, 0), 50);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "node/node.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -16,6 +19,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 constexpr auto kLongestWait = std::chrono::milliseconds(50);
+constexpr double kJump_m = 0.05;  // of the pose in the map that is logged
 constexpr auto kDiagnosticsPeriod = std::chrono::seconds(1);
 
 }  // namespace
@@ -24,8 +28,9 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
     : transport_(transport),
       rig_name_(calibration.rig.name),
       odometry_(calibration.rig, calibration.imu, config.mode, config.options, {config.delays, Inference::OwnThread}),
-      outputs_(transport, config),
-      imu_rate_(transport, config),
+      base_(transport, config),
+      outputs_(transport, config, base_.given()),
+      imu_rate_(transport, config, calibration.imu.gyro_noise),
       inputs_(transport, config.max_age_s, [this](const ImuSample& sample) { imu_rate_.add(sample); }) {
   // The first of a kind has a short name for its topic, another has its own.
   const Rig used = used_cameras(calibration.rig, config.mode, config.options.cameras);
@@ -94,8 +99,14 @@ bool Node::make_step() {
   if (!step) return false;
   newest_step_ = step->t;
   log_.add(*step);
-  imu_rate_.note(*step);
-  outputs_.publish(*step, imu_rate_.gyro_at(step->t));
+  if (const double moved_m = odom_.note(*step); moved_m > kJump_m)
+    spdlog::info(fmt::format("the map has moved the pose by {:.2f} m", moved_m));
+  const SE3 T_map_odom = odom_.T_M_odom();
+  const std::optional<SE3> T_B_base = base_.on_body();
+  std::optional<Estimate> base;
+  if (T_B_base) base = at(*T_B_base, imu_rate_.estimate_of(*step));
+  imu_rate_.note(*step, T_map_odom, T_B_base);
+  outputs_.publish(*step, base, T_map_odom);
   if (is_tracking(step->status)) outputs_.publish_cameras(step->t, odometry_.rig());
   return true;
 }
@@ -104,6 +115,7 @@ Diagnosis Node::publish_diagnostics() {
   NodeHealth health;
   health.odometry = odometry_.counters();
   inputs_.describe(health);
+  if (newest_step_) health.missing_transform = base_.waiting_for();
   log_.complete(health);
   if (const auto newest = imu_rate_.newest(); newest && newest_step_) health.age = *newest - *newest_step_;
   Diagnosis diagnosis = diagnose(health);

@@ -7,8 +7,10 @@
 
 #include "edged/io/calibration_data.hpp"
 #include "edged/odometry.hpp"
+#include "node/base_frame.hpp"
 #include "node/imu_rate_outputs.hpp"
 #include "node/inputs.hpp"
+#include "node/odom_frame.hpp"
 #include "node/outputs.hpp"
 #include "node/status_log.hpp"
 
@@ -36,6 +38,8 @@ class Node {
   Transport& transport_;
   const std::string rig_name_;
   Odometry odometry_;
+  BaseFrame base_;
+  OdomFrame odom_;
   Outputs outputs_;
   ImuRateOutputs imu_rate_;
   Inputs inputs_;

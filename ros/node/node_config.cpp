@@ -21,10 +21,17 @@ void NodeConfig::visit_node(ConfigFields& fields) {
                 {"", 0, 0, "which cameras beside the IMU"});
   fields.add("map_file", map_file,
              {"", 0, 0, "map of `edged run --save-map`, to relocalize in; option map.localize_only: only that"});
-  fields.add("world_frame", frames.world, {"", 0, 0, "name of the world in tf and headers"});
+  fields.add("map_frame", frames.map, {"", 0, 0, "name of the map in tf and headers; corrections move odom in it"});
+  fields.add("odom_frame", frames.odom, {"", 0, 0, "name of the frame in which poses are continuous"});
+  fields.add("base_frame", frames.base,
+             {"", 0, 0, "name of the robot's base, e.g. base_link, whose poses are published; empty: the body's"});
   fields.add("body_frame", frames.body,
              {"", 0, 0, "name of the body, which is the IMU; cameras have those of the rig"});
-  fields.add("publish_tf", publish_tf, {"", 0, 0, "send transforms of body and cameras"});
+  fields.add(
+      "body_pose", body_pose,
+      {"", 0, 0, "pose of the IMU in base_frame, 'x y z roll pitch yaw' in m and rad; empty: that of /tf_static"});
+  fields.add("frame_prefix", frames.prefix, {"", 0, 0, "put in front of all names of frames, e.g. drone1/"});
+  fields.add("publish_tf", publish_tf, {"", 0, 0, "send transforms of odom, base and cameras"});
   fields.add("delays.events_s", delays.events_s, {"s", 0, 10, "events may lag this far behind the other sensors"});
   fields.add("delays.frames_s", delays.frames_s, {"s", 0, 10, "as delays.events_s"});
   fields.add("delays.imu_s", delays.imu_s, {"s", 0, 10, "as delays.events_s"});
@@ -42,6 +49,13 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("publish_px4", publish_px4,
              {"", 0, 0, "ROS 2: px4_msgs/VehicleOdometry on /fmu/in/vehicle_visual_odometry"});
   fields.group("autopilot", autopilot);
+}
+
+FrameNames NodeConfig::frame_names() const {
+  FrameNames names = frames;
+  if (names.base.empty()) names.base = names.body;
+  for (std::string* name : {&names.map, &names.odom, &names.base, &names.body}) name->insert(0, names.prefix);
+  return names;
 }
 
 Calibration load_node_rig(const NodeConfig& config) {

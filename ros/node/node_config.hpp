@@ -12,17 +12,20 @@
 
 namespace edged::node {
 
-/// Names of the frames in tf.
+/// Names of the frames in tf, as of REP 105.
 struct FrameNames {
-  std::string world = "odom";  ///< W
-  std::string body = "body";   ///< B, the IMU
+  std::string map = "map";    ///< W: the map corrects poses in it, which jump then
+  std::string odom = "odom";  ///< poses in it are continuous
+  std::string base;           ///< of the robot; "" if it is the body
+  std::string body = "body";  ///< B, the IMU
+  std::string prefix = {};    ///< of cameras, whose names are those of the rig
 };
 
 /// The occupancy map that is published as a grid seen from above.
 struct OccupancyGridConfig {
   double voxel_m = 0.0;              ///< edge of its voxels; 0: none is made
   double period_s = 5.0;             ///< between messages
-  double low_m = 0.0, high_m = 0.0;  ///< what it shows: heights in the world; both 0: those of the path, and a voxel
+  double low_m = 0.0, high_m = 0.0;  ///< what it shows: heights in the map; both 0: those of the path, and a voxel
 
   void visit(ConfigFields& fields);
 };
@@ -32,6 +35,7 @@ struct NodeConfig {
   Mode mode = Mode::Fused;
   std::string map_file;  ///< written by `edged run --save-map`, to relocalize in; "": none
   FrameNames frames;
+  std::string body_pose;  ///< in the base: x y z [m] roll pitch yaw [rad]; "" if /tf_static has it
   bool publish_tf = true;
   SensorDelays delays;
   double max_age_s = 0.25;  ///< QueueConfig::max_age_s
@@ -44,6 +48,8 @@ struct NodeConfig {
 
   /// All but `options`, which have another place in ROS 1 than in ROS 2.
   void visit_node(ConfigFields& fields);
+  /// All with their prefix, that of the base set.
+  FrameNames frame_names() const;
 };
 
 /// The calibration of config.rig. Throws InputError if it lacks the poses of the cameras.

@@ -31,6 +31,9 @@ class KeptTransport : public Transport {
     return found == remapped.end() ? topic : found->second;
   }
   void subscribe(const std::string& topic, Role, Receive receive) override { receivers[topic] = std::move(receive); }
+  void subscribe_latched(const std::string& topic, const std::string&, Receive receive) override {
+    receivers[topic] = std::move(receive);
+  }
   void start() override { runs = true; }
   void stop() override { runs = false; }
   bool ok() const override { return true; }

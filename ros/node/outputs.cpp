@@ -9,9 +9,10 @@ constexpr std::size_t kImageQueue = 2, kDiagnosticsQueue = 100;  // messages tha
 
 }  // namespace
 
-Outputs::Outputs(Transport& transport, const NodeConfig& config)
+Outputs::Outputs(Transport& transport, const NodeConfig& config, const std::optional<SE3>& T_base_B)
     : transport_(transport),
-      poses_(transport, config),
+      format_{transport.wire(), config.frame_names()},
+      poses_(transport, config, T_base_B),
       map_(transport, config),
       diagnostics_(transport.advertise({"/diagnostics", "diagnostic_msgs/DiagnosticArray", kDiagnosticsQueue})) {}
 
@@ -19,10 +20,10 @@ void Outputs::add_camera(const std::string& name, const std::string& topic) {
   tracks_[name] = transport_.advertise({"~/tracks/" + topic, "sensor_msgs/Image", kImageQueue});
 }
 
-void Outputs::publish(const Step& step, const Eigen::Vector3d& gyro_B) {
+void Outputs::publish(const Step& step, const std::optional<Estimate>& base, const SE3& T_map_odom) {
   publish_images(step);
   if (!is_tracking(step.status)) return;
-  poses_.publish({step.state, gyro_B, step.covariance});
+  if (base) poses_.publish(*base, T_map_odom);
   map_.publish(step);
 }
 
@@ -30,7 +31,7 @@ void Outputs::publish_images(const Step& step) const {
   for (const CameraStep& camera : step.cameras) {
     const auto topic = tracks_.find(camera.name);
     if (topic != tracks_.end() && !camera.image.empty() && topic->second->wanted())
-      topic->second->publish(tracks_message(transport_.wire(), step.t, camera));
+      topic->second->publish(tracks_message(format_, step.t, camera));
   }
 }
 

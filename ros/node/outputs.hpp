@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "node/map_outputs.hpp"
@@ -15,21 +16,22 @@ namespace edged::node {
 /// All messages but poses and transforms are made only for subscribers.
 class Outputs {
  public:
-  /// Throws InputError for heights of the grid in the wrong order.
-  Outputs(Transport& transport, const NodeConfig& config);
+  /// T_base_B: as PoseOutputs. Throws InputError for heights of the grid in the wrong order.
+  Outputs(Transport& transport, const NodeConfig& config, const std::optional<SE3>& T_base_B);
 
   /// Advertises the tracked images of a camera. topic: "events", "frames", or its name.
   void add_camera(const std::string& name, const std::string& topic);
   /// The cameras of the mode as calibrated so far.
   void publish_cameras(Timestamp t, const Rig& rig) { poses_.publish_cameras(t, rig); }
-  /// The results of one packet. gyro_B: measured at that time [rad/s].
-  void publish(const Step& step, const Eigen::Vector3d& gyro_B);
+  /// The results of one packet. base: its state in the map, nothing while its place on the body is unknown.
+  void publish(const Step& step, const std::optional<Estimate>& base, const SE3& T_map_odom);
   void publish(const Diagnosis& diagnosis, const std::string& hardware) const;
 
  private:
   void publish_images(const Step& step) const;
 
   Transport& transport_;
+  const Format format_;
   PoseOutputs poses_;
   MapOutputs map_;
   std::map<std::string, std::unique_ptr<Publisher>> tracks_;  ///< by camera

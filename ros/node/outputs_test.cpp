@@ -41,7 +41,7 @@ Step step_with_keyframe(double z) {
 /// The last message of a latched topic, once the thread that makes it has ended.
 std::string last_of(const std::string& topic, const std::string& type, const NodeConfig& config, Wire wire) {
   KeptTransport transport(wire);
-  Outputs(transport, config).publish(step_with_keyframe(1.05), Eigen::Vector3d::Zero());
+  Outputs(transport, config, std::nullopt).publish(step_with_keyframe(1.05), Estimate(), SE3());
   EXPECT_THAT(transport.topics, Contains(topic + " " + type));
   EXPECT_THAT(transport.latched, Contains(topic));
   return transport.last[topic];
@@ -101,14 +101,14 @@ TEST(OccupancyGrid, ShowsTheChosenHeights) {
   EXPECT_EQ(grid_of(config, Wire::Cdr), "") << "nothing is known there";
   config.occupancy.low_m = 5.0;
   KeptTransport transport(Wire::Cdr);
-  EXPECT_THAT([&] { Outputs(transport, config); },
+  EXPECT_THAT([&] { Outputs(transport, config, std::nullopt); },
               ThrowsMessage<InputError>("occupancy.low_m 5: must be below occupancy.high_m 4"));
 }
 
 TEST(OccupancyGrid, IsOffByDefault) {
   KeptTransport transport(Wire::Cdr);
   const NodeConfig config;
-  Outputs(transport, config).publish(step_with_keyframe(1.05), Eigen::Vector3d::Zero());
+  Outputs(transport, config, std::nullopt).publish(step_with_keyframe(1.05), Estimate(), SE3());
   EXPECT_THAT(transport.topics, Not(Contains("~/occupancy nav_msgs/OccupancyGrid")));
 }
 

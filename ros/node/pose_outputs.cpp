@@ -3,7 +3,9 @@
 #include "node/pose_outputs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <vector>
 
 namespace edged::node {
 namespace {
@@ -20,9 +22,10 @@ bool has_moved(const SE3& before, const SE3& now) {
 
 }  // namespace
 
-PoseOutputs::PoseOutputs(Transport& transport, const NodeConfig& config)
-    : format_{transport.wire(), config.frames},
+PoseOutputs::PoseOutputs(Transport& transport, const NodeConfig& config, const std::optional<SE3>& T_base_B)
+    : format_{transport.wire(), config.frame_names()},
       publish_tf_(config.publish_tf),
+      T_base_B_(T_base_B),
       odometry_(transport.advertise({"~/odometry", "nav_msgs/Odometry", kPoseQueue})),
       pose_(transport.advertise({"~/pose", "geometry_msgs/PoseWithCovarianceStamped", kPoseQueue})),
       path_topic_(transport.advertise({"~/path", "nav_msgs/Path", 1})),
@@ -32,11 +35,15 @@ PoseOutputs::PoseOutputs(Transport& transport, const NodeConfig& config)
       path_message_(kPathPeriod),
       cameras_message_(kCamerasPeriod) {}
 
-void PoseOutputs::publish(const Estimate& estimate) {
-  odometry_->publish(odometry_message(format_, estimate));
-  pose_->publish(pose_message(format_, estimate));
-  if (publish_tf_) transforms_->publish(body_transform_message(format_, estimate.state));
-  extend_path(estimate.state);
+void PoseOutputs::publish(const Estimate& in_map, const SE3& T_map_odom) {
+  const Estimate in_odom = in(T_map_odom.inverse(), in_map);
+  odometry_->publish(odometry_message(format_, in_odom));
+  pose_->publish(pose_message(format_, in_map));
+  const FrameNames& names = format_.frames;
+  const std::array<FrameTransform, 2> tree{
+      {{names.map, names.odom, T_map_odom}, {names.odom, names.base, in_odom.state.T_W_B}}};
+  if (publish_tf_) transforms_->publish(transforms_message(format_.wire, in_map.state.t, tree));
+  extend_path(in_map.state);
 }
 
 void PoseOutputs::extend_path(const NavState& state) {
@@ -55,8 +62,14 @@ void PoseOutputs::publish_cameras(Timestamp t, const Rig& rig) {
   };
   if (!publish_tf_ || !cameras_message_.is_over(t) || std::ranges::none_of(rig.cameras, is_changed)) return;
   cameras_message_.begins(t);
-  for (const RigCamera& camera : rig.cameras) sent_cameras_[camera.name] = camera.T_B_C;
-  static_transforms_->publish(camera_transforms_message(format_, t, rig));
+  const FrameNames& names = format_.frames;
+  std::vector<FrameTransform> transforms;
+  if (T_base_B_) transforms.push_back({names.base, names.body, *T_base_B_});
+  for (const RigCamera& camera : rig.cameras) {
+    sent_cameras_[camera.name] = camera.T_B_C;
+    transforms.push_back({names.body, names.prefix + camera.name, camera.T_B_C});
+  }
+  static_transforms_->publish(transforms_message(format_.wire, t, transforms));
 }
 
 }  // namespace edged::node

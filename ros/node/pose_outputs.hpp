@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "node/messages.hpp"
@@ -17,8 +18,10 @@ namespace edged::node {
 /// A path is made only for a subscriber.
 class PoseOutputs {
  public:
-  PoseOutputs(Transport& transport, const NodeConfig& config);
-  void publish(const Estimate& estimate);
+  /// T_base_B: sent as a transform, too; nothing if it is that of others.
+  PoseOutputs(Transport& transport, const NodeConfig& config, const std::optional<SE3>& T_base_B);
+  /// The state of the base in the map.
+  void publish(const Estimate& in_map, const SE3& T_map_odom);
   /// The cameras as calibrated so far: once, and again, but not often, after their online calibration has changed.
   void publish_cameras(Timestamp t, const Rig& rig);
 
@@ -27,6 +30,7 @@ class PoseOutputs {
 
   const Format format_;
   const bool publish_tf_;
+  const std::optional<SE3> T_base_B_;
   const std::unique_ptr<Publisher> odometry_, pose_, path_topic_, transforms_, static_transforms_;
   Period path_step_, path_message_, cameras_message_;
   std::deque<StampedPose> path_;

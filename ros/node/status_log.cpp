@@ -12,6 +12,7 @@
 namespace edged::node {
 namespace {
 
+constexpr auto kWaitPeriod = std::chrono::seconds(5);
 constexpr Duration kMostJitter = std::chrono::milliseconds(5);
 constexpr std::size_t kMostLines = 100;  // texts of damaged messages may differ without end
 
@@ -57,7 +58,15 @@ void StatusLog::complete(NodeHealth& health) {
   health.reason = reason_;
   const std::size_t lost = lost_measurements(health);
   health.newly_lost = lost - std::exchange(lost_, lost);
-  if (const auto line = drops_.update(health.dropped, DropReport::Clock::now())) spdlog::warn(*line);
+  const auto now = DropReport::Clock::now();
+  const bool waits = !status_ || *status_ == TrackingStatus::Initializing;
+  if (!waits || now - waits_from_ >= kWaitPeriod) {
+    if (waits) spdlog::warn("waiting: " + diagnose(health).message);
+    waits_from_ = now;
+  }
+  if (const auto line = drops_.update(health.dropped, now)) spdlog::warn(*line);
+  if (!health.missing_transform.empty() && said_.insert(health.missing_transform).second)
+    spdlog::warn(health.missing_transform);
   for (const auto& [topic, input] : health.inputs)
     for (const std::string& trouble : troubles_of(topic, input))
       if (said_.size() < kMostLines && said_.insert(trouble).second) spdlog::warn(trouble);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// What the node logs: changes of the status, overload, and what is wrong with topics.
+// What the node logs: changes of the status, what it waits for, overload, and what is wrong with topics.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@ class StatusLog {
  public:
   /// Each step, in order.
   void add(const Step& step);
-  /// Logs each trouble once; the counters go on in the diagnostics. Fills in the status, and what is newly lost.
+  /// Logs each trouble once, and every few seconds what it waits for before the first pose; the counters go on in the
+  /// diagnostics. Fills in the status, and what is newly lost.
   void complete(NodeHealth& health);
 
  private:
@@ -25,6 +26,7 @@ class StatusLog {
   std::size_t lost_ = 0;        ///< lost_measurements of the last health
   std::set<std::string> said_;  ///< troubles that have been logged
   DropReport drops_;
+  DropReport::Clock::time_point waits_from_ = DropReport::Clock::now();  ///< of the last line on what it waits for
 };
 
 }  // namespace edged::node

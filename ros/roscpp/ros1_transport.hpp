@@ -23,6 +23,9 @@ class Ros1Transport final : public node::Transport {
   std::unique_ptr<node::Publisher> advertise(const node::Advertised& topic) override;
   std::string full_name(const std::string& topic) const override { return public_.resolveName(topic); }
   void subscribe(const std::string& topic, Role role, Receive receive) override;
+  void subscribe_latched(const std::string& topic, const std::string& /*type*/, Receive receive) override {
+    subscribe(topic, {}, std::move(receive));
+  }
   void start() override { spinner_.start(); }
   void stop() override { spinner_.stop(); }
   bool ok() const override { return ros::ok(); }

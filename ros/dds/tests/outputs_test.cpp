@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 
 constexpr Timestamp kOutputTime = timestamp_from_ns(1'700'000'000'123'456'789);
-const node::Format kFormat{};  // of ROS 2, frames odom and body
+const node::Format kFormat{};  // of ROS 2, frames map, odom and body
 
 node::Estimate some_estimate() {
   node::Estimate estimate;
@@ -68,7 +68,7 @@ TEST_F(Ros2Outputs, PoseWithCovariance) {
   const auto* pose =
       passed(peer, "geometry_msgs/PoseWithCovarianceStamped", node::pose_message(kFormat, some_estimate()));
   ASSERT_TRUE(pose);
-  expect_header(pose->header, "odom");
+  expect_header(pose->header, "map");
   EXPECT_EQ(pose->pose.pose.position.y, 2.0);
   EXPECT_EQ(pose->pose.covariance[0], 7.0);
 }
@@ -79,18 +79,17 @@ TEST_F(Ros2Outputs, Path) {
   const auto* path =
       passed(peer, "nav_msgs/Path", node::path_message(kFormat, kOutputTime, {{kOutputTime, SE3()}, {kOutputTime, T}}));
   ASSERT_TRUE(path);
-  expect_header(path->header, "odom");
+  expect_header(path->header, "map");
   ASSERT_EQ(path->poses._length, 2U);
-  expect_header(path->poses._buffer[1].header, "odom");
+  expect_header(path->poses._buffer[1].header, "map");
   EXPECT_EQ(path->poses._buffer[1].pose.position.x, 1.0);
 }
 
 TEST_F(Ros2Outputs, Transforms) {
   TypedPeer<tf2_msgs_msg_dds__TFMessage_> peer("/out", tf2_msgs_msg_dds__TFMessage__desc);
-  Rig rig;
-  rig.cameras.push_back(
-      {"dvs", Modality::Events, CameraModel(), SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))});
-  const auto* tf = passed(peer, "tf2_msgs/TFMessage", node::camera_transforms_message(kFormat, kOutputTime, rig));
+  const std::vector<node::FrameTransform> sent{
+      {"body", "dvs", SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 0.1))}};
+  const auto* tf = passed(peer, "tf2_msgs/TFMessage", node::transforms_message(Wire::Cdr, kOutputTime, sent));
   ASSERT_TRUE(tf);
   ASSERT_EQ(tf->transforms._length, 1U);
   expect_header(tf->transforms._buffer[0].header, "body");
@@ -104,7 +103,7 @@ TEST_F(Ros2Outputs, Landmarks) {
   const std::vector<Landmark> landmarks = {{7, {1, 2, 3}}, {9, {4, 5, 6}}};
   const auto* cloud = passed(peer, "sensor_msgs/PointCloud2", node::landmarks_message(kFormat, kOutputTime, landmarks));
   ASSERT_TRUE(cloud);
-  expect_header(cloud->header, "odom");
+  expect_header(cloud->header, "map");
   EXPECT_EQ(cloud->height, 1U);
   EXPECT_EQ(cloud->width, 2U);
   ASSERT_EQ(cloud->fields._length, 4U);
@@ -130,7 +129,7 @@ TEST_F(Ros2Outputs, OccupancyGrid) {
   slice.cells.at<schar>(1, 2) = OccupancySlice::kFree;
   const auto* grid = passed(peer, "nav_msgs/OccupancyGrid", node::occupancy_message(kFormat, kOutputTime, slice, 0.05));
   ASSERT_TRUE(grid);
-  expect_header(grid->header, "odom");
+  expect_header(grid->header, "map");
   EXPECT_EQ(grid->info.map_load_time.nanosec, 123'456'789U);
   EXPECT_EQ(grid->info.resolution, 0.05F);
   EXPECT_EQ(grid->info.width, 3U);
@@ -148,7 +147,7 @@ TEST_F(Ros2Outputs, Octomap) {
   tree.updateNode(octomap::point3d(1.0F, 2.0F, 3.0F), true);
   const auto* map = passed(peer, "octomap_msgs/Octomap", node::octomap_message(kFormat, kOutputTime, tree));
   ASSERT_TRUE(map);
-  expect_header(map->header, "odom");
+  expect_header(map->header, "map");
   EXPECT_TRUE(map->binary);
   EXPECT_STREQ(map->id, "OcTree");
   EXPECT_EQ(map->resolution, 0.05);
@@ -160,7 +159,7 @@ TEST_F(Ros2Outputs, Octomap) {
 TEST_F(Ros2Outputs, TrackedImages) {
   TypedPeer<sensor_msgs_msg_dds__Image_> peer("/out", sensor_msgs_msg_dds__Image__desc);
   const CameraStep camera{"cam", Modality::Frames, cv::Mat(20, 30, CV_8UC1, cv::Scalar(50))};
-  const auto* image = passed(peer, "sensor_msgs/Image", node::tracks_message(Wire::Cdr, kOutputTime, camera));
+  const auto* image = passed(peer, "sensor_msgs/Image", node::tracks_message(kFormat, kOutputTime, camera));
   ASSERT_TRUE(image);
   expect_header(image->header, "cam");
   EXPECT_EQ(image->height, 20U);

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
 // Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] Writes OUT.tum (odometry) and OUT.json; without a recording also
-// OUT.ready once the node publishes to it. skip: packet numbers that are never sent; loss: packets of the network that
-// are; nodes: it waits for so many; listen: ends so long after the last pose.
+// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] [base=FRAME] Writes OUT.tum (poses in the map), OUT.odom.tum,
+// OUT.prediction.tum and OUT.json; without a recording also OUT.ready once the node publishes to it. skip: packet
+// numbers that are never sent; loss: packets of the network that are; nodes: it waits for so many; listen: ends so long
+// after the last pose; base: on /tf_static the body is 0.2 m in front of that frame.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -118,11 +119,12 @@ struct Output {
   const char* topic;  ///< "~" stands for the node
   const char* type;
   FastQos qos;
+  const char* poses = nullptr;  ///< end of the file of its poses, if it has one
 };
 const Output kOutputs[] = {
-    {"~/odometry", "nav_msgs::msg::dds_::Odometry_", {true, false, 1000}},
-    {"~/prediction", "nav_msgs::msg::dds_::Odometry_", {true, false, 5000}},
-    {"~/pose", "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", {true, false, 1000}},
+    {"~/odometry", "nav_msgs::msg::dds_::Odometry_", {true, false, 1000}, ".odom.tum"},
+    {"~/prediction", "nav_msgs::msg::dds_::Odometry_", {true, false, 5000}, ".prediction.tum"},
+    {"~/pose", "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_", {true, false, 1000}, ".tum"},
     {"~/path", "nav_msgs::msg::dds_::Path_", {true, false, 10}},
     {"~/landmarks", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 10}},
     {"~/map", "sensor_msgs::msg::dds_::PointCloud2_", {true, false, 1}},
@@ -236,11 +238,11 @@ Json fields_of(const std::string& type, const std::string& bytes) {
   return json;
 }
 
-/// odometry: messages of the first output. Positions and rotations as trajectories have them.
-void write_tum(const std::string& file, const std::vector<std::string>& odometry) {
+/// Positions and rotations as trajectories have them. type: one with a pose.
+void write_tum(const std::string& file, const std::string& type, const std::vector<std::string>& messages) {
   std::ofstream out(file);
-  for (const std::string& bytes : odometry) {
-    const Json fields = fields_of(kOutputs[0].type, bytes);
+  for (const std::string& bytes : messages) {
+    const Json fields = fields_of(type, bytes);
     const auto ns = fields["stamp_ns"].get<std::int64_t>();
     char stamp[40];
     std::snprintf(stamp, sizeof stamp, "%lld.%09lld", static_cast<long long>(ns / 1'000'000'000),
@@ -278,11 +280,10 @@ class Listener {
       const std::vector<std::string> messages = collectors_[output.topic].messages();
       json[output.topic] = {{"count", messages.size()}};
       if (!messages.empty()) json[output.topic]["last"] = fields_of(output.type, messages.back());
+      if (output.poses) write_tum(out + output.poses, output.type, messages);
     }
     add_delays(json[kToPx4]);
     std::ofstream(out + ".json") << json.dump(1) << "\n";
-    write_tum(out + ".tum", collectors_["~/odometry"].messages());
-    write_tum(out + ".prediction.tum", collectors_["~/prediction"].messages());
   }
 
  private:
@@ -337,12 +338,23 @@ void drive_recording(Participant& participant, Driver& driver, const std::string
   }
 }
 
+/// A robot's description: tf2_msgs/TFMessage from that frame to the body.
+void describe_robot(Participant& participant, const std::string& base) {
+  Encoder out(1024);
+  (out << std::uint32_t{1}).header(0, base);
+  out << std::string("body");
+  out.doubles({0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0});
+  std::string tree = out.bytes();
+  participant.writer("/tf_static", "tf2_msgs::msg::dds_::TFMessage_", {true, true, 1})->write(&tree);
+}
+
 int run_peer(const std::string& recording, const std::string& out, const Options& options) {
   const char* domain = std::getenv("ROS_DOMAIN_ID");
   Participant participant(domain ? static_cast<std::uint32_t>(std::atoi(domain)) : 0,
                           number_of(options, "interfaces", 1) < 2);
   const auto node = options.find("node");
   Listener listener(participant, node == options.end() ? "edged" : node->second);
+  if (options.contains("base")) describe_robot(participant, options.at("base"));
   std::optional<Driver> driver;
   if (recording != "none") {
     driver.emplace(participant, options);

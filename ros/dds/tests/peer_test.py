@@ -6,7 +6,9 @@ near it is to the offline result, late and killed peers, several nodes and domai
 
 Wants $EDGED and $EDGED_ROS2_PEER.
 """
+import itertools
 import json
+import math
 import os
 import pathlib
 import signal
@@ -41,6 +43,14 @@ def largest_difference(a, b):
 def closest(pose, other):
     same = sum(x * y for x, y in zip(pose[3:], other[3:])) > 0
     return other if same else other[:3] + [-x for x in other[3:]]
+
+
+def transformed(pose, point):
+    """The point [m] of a frame with that pose."""
+    (x, y, z), q, w = pose[:3], pose[3:6], pose[6]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    turned = [2 * c for c in cross(q, point)]
+    return [a + b + w * c + d for a, b, c, d in zip((x, y, z), point, turned, cross(q, turned))]
 
 
 class Node:
@@ -131,8 +141,9 @@ class PeerOnFastDds(unittest.TestCase):
         odometry = last["~/odometry"]
         self.assertEqual((odometry["frame"], odometry["child"]), ("odom", "body"))
         self.assertGreater(odometry["pose_covariance"][0], 0)
+        self.assertGreater(odometry["twist_covariance"][35], 0)
         self.assertAlmostEqual(sum(x * x for x in odometry["pose"][3:]), 1, 9)
-        self.assertEqual(last["~/pose"]["pose"], odometry["pose"])
+        self.assertEqual(last["~/pose"]["frame"], "map")
         self.assertEqual(last["~/pose"]["pose_covariance"], odometry["pose_covariance"])
         self.assertEqual(seen["~/pose"]["count"], seen["~/odometry"]["count"])
         self.assertGreater(seen["~/prediction"]["count"], 10 * seen["~/odometry"]["count"])
@@ -141,26 +152,87 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertEqual([field["name"] for field in cloud["fields"]], ["x", "y", "z", "id"])
         self.assertEqual(cloud["bytes"], cloud["width"] * cloud["point_step"])
         grid, cells = last["~/occupancy"], last["~/occupancy"]["cells"]
-        self.assertEqual((grid["frame"], round(grid["resolution"], 6), grid["origin"][2:]), ("odom", 0.05, [0, 0, 0, 0, 1]))
+        self.assertEqual((grid["frame"], round(grid["resolution"], 6), grid["origin"][2:]), ("map", 0.05, [0, 0, 0, 0, 1]))
         self.assertEqual(10**9 * grid["load_time_s"] + grid["load_time_ns"], grid["stamp_ns"])
         self.assertEqual((sum(cells.values()), cells["others"]), (grid["width"] * grid["height"], 0))
         self.assertGreater(cells["free"], 100)
         print(f"grid of {grid['width']} x {grid['height']}: {cells}")
         voxels = last["~/octomap"]
-        self.assertEqual((voxels["frame"], voxels["binary"], voxels["id"], voxels["resolution"]), ("odom", True, "OcTree", 0.05))
+        self.assertEqual((voxels["frame"], voxels["binary"], voxels["id"], voxels["resolution"]), ("map", True, "OcTree", 0.05))
         self.assertEqual(voxels["stamp_ns"], grid["stamp_ns"])
         self.assertGreater(voxels["bytes"], 1000)
         for camera in ("events", "frames"):
             image = last[f"~/tracks/{camera}"]
             self.assertEqual(image["bytes"], 3 * image["width"] * image["height"])
             self.assertEqual((image["encoding"], image["frame"]), ("bgr8", camera))
-        self.assertEqual([t["child"] for t in last["/tf"]["transforms"]], ["body"])
-        self.assertEqual(last["/tf"]["transforms"][0]["pose"], odometry["pose"])
+        to_odom, to_body = last["/tf"]["transforms"]
+        self.assertEqual([to_odom["frame"], to_odom["child"], to_body["frame"], to_body["child"]], ["map", "odom", "odom", "body"])
+        self.assertEqual(to_body["pose"], odometry["pose"])
         self.assertEqual({t["child"] for t in last["/tf_static"]["transforms"]}, {"events", "frames"})
         diagnostics = last["/diagnostics"]
         self.assertEqual(diagnostics["name"], "edged: odometry")
         self.assertTrue(diagnostics["message"].startswith("Good"), diagnostics["message"])
         self.assertEqual(diagnostics["values"]["/imu messages"], str(1000 * SECONDS + 1))
+
+    def test_poses_are_continuous_in_odom_while_the_map_moves_it_and_those_of_the_base(self):
+        flight, map_file, mapped = (self.folder / name for name in ("flight", "room.map", "mapped"))
+        edged("simulate", "--preset", "room", "--duration", 10, "--out", flight, "--quiet")
+        edged("run", flight, "--frame", "body", "--quiet", "--out", mapped, "--save-map", map_file)
+        node = Node(self, "--set", f"map_file={map_file}", "--set", "base_frame=base_link")
+        later = 6  # in the map the flight begins away from its origin
+        seen = self.peer(flight, "peer", base="base_link", **{"from": later})
+        node.end()
+        self.assertRegex(node.log(), r"the map has moved the pose by 0\.\d+ m")
+        tree = [(t["frame"], t["child"]) for t in seen["/tf"]["last"]["transforms"]]
+        self.assertEqual(tree, [("map", "odom"), ("odom", "base_link")])
+        self.assertEqual(seen["~/odometry"]["last"]["child"], "base_link")
+        in_odom, in_map = poses(self.folder / "peer.odom.tum"), poses(self.folder / "peer.tum")
+        self.assertEqual(in_odom.keys(), in_map.keys())
+        of_body = poses(mapped / "trajectory.tum")
+        steps = [(t, next_t) for t, next_t in itertools.pairwise(sorted(in_odom)) if t in of_body and next_t in of_body]
+        self.assertGreater(len(steps), 20)
+        step = lambda path, t, next_t: math.dist(path[t][:3], path[next_t][:3])
+        jumps = [step(in_map, *times) for times in steps]
+        self.assertGreater(max(jumps), 0.05)
+        speed_mps = 1.5  # of the preset, at most, and of the base, which swings by 0.2 m
+        for (t, next_t), jump in zip(steps, jumps):
+            self.assertLess(step(in_odom, t, next_t), speed_mps * 1e-6 * (next_t - t) + 1e-3)
+        last = max(set(in_map) & set(of_body))
+        offset = transformed(in_map[last], [0.2, 0.0, 0.0])
+        print("the body in the loaded map, and where that was made:", offset, of_body[last][:3])
+        self.assertLess(math.dist(offset, of_body[last][:3]), 0.05)
+
+    def test_what_it_waits_for_is_logged_within_6_s_and_what_no_node_has_is_refused(self):
+        node = Node(self)
+        time.sleep(6)
+        self.assertIn("waiting: no packet yet; nothing has come on /events; nothing has come on /image; nothing has come on /imu",
+                      node.log())
+        node.end()
+        rig = ["--rig", "davis240c_ecd"]
+        for args, message in (([*rig, "-r", "evnts:=/e"], "remapping /evnts:=/e: there is no topic /evnts, but "),
+                              (["--ros-args", "-p", "rigg:=x"], "rigg"),
+                              (["--ros-args", "--params-file", "/nowhere.yaml"], "--params-file /nowhere.yaml: cannot be read")):
+            done = subprocess.run([EDGED, "ros2", *args], capture_output=True, text=True, timeout=20)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn(message, done.stderr)
+
+    def test_it_takes_the_arguments_of_launch(self):
+        parameters = self.folder / "params.yaml"
+        parameters.write_text("/**:\n  ros__parameters:\n    mode: frames\n    path_step_s: 0.5\n"
+                              "other:\n  ros__parameters: {mode: events}\n"
+                              "robot:\n  edged:\n    ros__parameters: {base_frame: base_link, map: {enabled: false}}\n")
+        config = output_of("ros2", "--ros-args", "-r", "__ns:=/robot", "--params-file", parameters, "-p", "path_step_s:=0.25",
+                           "--log-level", "info", "--print-config")
+        for line in ("mode: frames ", "path_step_s: 0.25 ", 'base_frame: "base_link" '):
+            self.assertIn("\n" + line, config)
+
+    def test_no_pose_is_sent_and_the_log_says_why_while_the_robot_is_not_described(self):
+        node = Node(self, "--set", "base_frame=base_link")
+        seen = self.peer(self.recording, "peer")
+        node.end()
+        self.assertEqual((seen["~/odometry"]["count"], seen["~/prediction"]["count"], seen["/tf"]["count"]), (0, 0, 0))
+        self.assertIn("no transform from base_link to body on /tf_static", seen["/diagnostics"]["last"]["message"])
+        self.assertEqual(node.log().count("no transform from base_link to body on /tf_static"), 1)
 
     def check_px4(self, seen, predictions):
         """The same states as ~/prediction, with z and y turned round."""

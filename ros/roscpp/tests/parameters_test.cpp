@@ -29,7 +29,7 @@ node::NodeConfig config_of(const XmlRpcValue& parameters) {
 TEST(Parameters, OfTheNodeAndOptionsOfTheOdometryAreSet) {
   XmlRpcValue parameters = with_rig();
   parameters["mode"] = "events";
-  parameters["world_frame"] = "map";
+  parameters["odom_frame"] = "odometry";
   parameters["publish_tf"] = false;
   parameters["delays"]["imu_s"] = 1;
   parameters["options"]["packets"]["max_interval_s"] = 0.03;
@@ -37,7 +37,7 @@ TEST(Parameters, OfTheNodeAndOptionsOfTheOdometryAreSet) {
   const node::NodeConfig config = config_of(parameters);
   EXPECT_EQ(config.rig, "davis240c_ecd");
   EXPECT_EQ(config.mode, Mode::Events);
-  EXPECT_EQ(config.frames.world, "map");
+  EXPECT_EQ(config.frames.odom, "odometry");
   EXPECT_FALSE(config.publish_tf);
   EXPECT_EQ(config.delays.imu_s, 1.0);
   EXPECT_EQ(config.options.packets.max_interval_s, 0.03);

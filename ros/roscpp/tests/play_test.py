@@ -148,7 +148,7 @@ class PlayedMirror(unittest.TestCase):
 
     def test_odometry_is_as_near_to_the_truth_as_offline(self):
         offline = ate_m(self.truth, self.folder / "offline" / "trajectory.tum")
-        for topic in ("/edged/odometry", "/edged/prediction"):
+        for topic in ("/edged/pose", "/edged/odometry", "/edged/prediction"):
             file = self.folder / "online.tum"
             write_tum(file, self.published[topic])
             online = ate_m(self.truth, file)
@@ -166,9 +166,9 @@ class PlayedMirror(unittest.TestCase):
     def test_frames_landmarks_images_and_path_fit_one_another(self):
         frames = {(t.header.frame_id, t.child_frame_id) for topic in ("/tf", "/tf_static")
                   for m in self.published[topic] for t in m.transforms}
-        self.assertEqual(frames, {("odom", "body"), ("body", "events"), ("body", "frames")})
+        self.assertEqual(frames, {("map", "odom"), ("odom", "body"), ("body", "events"), ("body", "frames")})
         for topic in ("/edged/landmarks", "/edged/path"):
-            self.assertEqual(self.published[topic][-1].header.frame_id, "odom")
+            self.assertEqual(self.published[topic][-1].header.frame_id, "map")
         self.assertGreater(self.published["/edged/landmarks"][-1].width, 10)
         self.assertGreater(len(self.published["/edged/path"][-1].poses), 100)
         for camera in ("events", "frames"):
