@@ -30,7 +30,7 @@ ImuRateOutputs::ImuRateOutputs(Transport& transport, const NodeConfig& config, d
   px4_ = transport.advertise({"/fmu/in/vehicle_visual_odometry", "px4_msgs/VehicleOdometry", 1, false, false});
 }
 
-void ImuRateOutputs::add(const ImuSample& sample) {
+void ImuRateOutputs::add(const ImuSample& sample, Duration set_by) {
   const std::lock_guard lock(mutex_);
   keep(sample);
   prediction_.add(sample);
@@ -38,7 +38,8 @@ void ImuRateOutputs::add(const ImuSample& sample) {
   if (!state || state->t != sample.t) return;  // a late sample is ignored
   if (mavlink_ || px4_) send_to_autopilot(*state, sample);
   if (!T_B_base_) return;
-  const Estimate base = at(*T_B_base_, {*state, sample.gyro_B, covariance_, gyro_sigma()});
+  Estimate base = at(*T_B_base_, {*state, sample.gyro_B, covariance_, gyro_sigma()});
+  base.state.t += set_by;
   topic_->publish(odometry_message(format_, in(T_map_odom_.inverse(), base)));
 }
 

@@ -25,8 +25,8 @@ class ImuRateOutputs {
   /// wrong, or ROS 1 is to have PX4's topic.
   ImuRateOutputs(Transport& transport, const NodeConfig& config, double gyro_noise);
 
-  /// A sample that has just arrived.
-  void add(const ImuSample& sample);
+  /// A sample that has just arrived, whose stamp was later by set_by.
+  void add(const ImuSample& sample, Duration set_by = {});
   /// Each step, in order. The prediction is that of the base in odom; without T_B_base there is none.
   void note(const Step& step, const SE3& T_map_odom, const std::optional<SE3>& T_B_base);
 

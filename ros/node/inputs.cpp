@@ -37,13 +37,21 @@ void Inputs::subscribe(const std::string& topic, Role role, const std::string& c
 void Inputs::on_message(const std::string& topic, SensorInput& input, const WireMessage& message) {
   std::optional<Measurement> measurement = input.read(message);
   if (!measurement) return;
-  if (const auto stamp = last_stamp(*measurement))
-    if (const auto wrong = clocks_->note(topic, *stamp)) spdlog::warn(*wrong);
-  if (const auto* sample = std::get_if<ImuSample>(&*measurement)) on_imu_(*sample);
+  const std::lock_guard lock(order_);
+  for (auto& [from, passed] : stamps_.pass(topic, std::move(*measurement), input.clock(), StampClock::Clock::now()))
+    queue(from, std::move(passed));
+}
+
+void Inputs::queue(const std::string& topic, Measurement measurement) {
+  if (const auto t = last_stamp(measurement)) {
+    inputs_.at(topic).note_time(*t);
+    if (const auto wrong = clocks_->note(topic, *t)) spdlog::warn(*wrong);
+  }
+  if (const auto* sample = std::get_if<ImuSample>(&measurement)) on_imu_(*sample);
   const MeasurementQueue::Clock::time_point now = MeasurementQueue::Clock::now();
-  if (auto* batch = std::get_if<EventBatch>(&*measurement))
+  if (auto* batch = std::get_if<EventBatch>(&measurement))
     thinner_.thin(*batch, to_seconds(now - queue_.waits_since().value_or(now)));
-  queue_.push(std::move(*measurement), now);
+  queue_.push(std::move(measurement), now);
 }
 
 std::optional<Measurement> Inputs::next(std::chrono::milliseconds longest) {

@@ -16,6 +16,7 @@
 #include "node/diagnostics.hpp"
 #include "topics/clock_check.hpp"
 #include "topics/sensor_input.hpp"
+#include "topics/stamp_clock.hpp"
 #include "topics/transport.hpp"
 
 namespace edged::node {
@@ -35,17 +36,22 @@ class Inputs {
   /// Nothing more is wanted: no thread of the transport waits for room.
   void interrupt() { queue_.interrupt(); }
 
+  /// StampClock::set_by
+  Duration clock_set_by() const { return stamps_.set_by(); }
   /// Fills in what is known of topics and dropped measurements.
   void describe(NodeHealth& health) const;
 
  private:
   void on_message(const std::string& topic, SensorInput& input, const WireMessage& message);
+  void queue(const std::string& topic, Measurement measurement);
 
   Transport& transport_;
   const std::function<void(const ImuSample&)> on_imu_;
   MeasurementQueue queue_;
   OverloadThinner thinner_;
   std::optional<ClockCheck> clocks_;
+  StampClock stamps_;
+  std::mutex order_;                           ///< of measurements of a topic, which another may release
   std::map<std::string, SensorInput> inputs_;  ///< by topic; not changed after start() of the transport
   std::mutex mutex_;
   std::exception_ptr failure_;  ///< the first one of a thread of the transport; guarded by the mutex

@@ -22,6 +22,14 @@ constexpr auto kLongestWait = std::chrono::milliseconds(50);
 constexpr double kJump_m = 0.05;  // of the pose in the map that is logged
 constexpr auto kDiagnosticsPeriod = std::chrono::seconds(1);
 
+/// What is published has stamps of the clock as it is set now.
+void stamp(Step& step, std::optional<Estimate>& base, Duration set_by) {
+  step.t += set_by;
+  step.state.t += set_by;
+  for (KeyframeRecord& keyframe : step.marginalized_keyframes) keyframe.t += set_by;
+  if (base) base->state.t += set_by;
+}
+
 }  // namespace
 
 Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& transport)
@@ -31,7 +39,8 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
       base_(transport, config),
       outputs_(transport, config, base_.given()),
       imu_rate_(transport, config, calibration.imu.gyro_noise),
-      inputs_(transport, config.max_age_s, [this](const ImuSample& sample) { imu_rate_.add(sample); }) {
+      inputs_(transport, config.max_age_s,
+              [this](const ImuSample& sample) { imu_rate_.add(sample, inputs_.clock_set_by()); }) {
   // The first of a kind has a short name for its topic, another has its own.
   const Rig used = used_cameras(calibration.rig, config.mode, config.options.cameras);
   for (const RigCamera& camera : used.cameras) {
@@ -95,7 +104,7 @@ void Node::add_waiting() {
 
 /// Whether there was work.
 bool Node::make_step() {
-  const std::optional<Step> step = odometry_.next();
+  std::optional<Step> step = odometry_.next();
   if (!step) return false;
   newest_step_ = step->t;
   log_.add(*step);
@@ -106,6 +115,7 @@ bool Node::make_step() {
   std::optional<Estimate> base;
   if (T_B_base) base = at(*T_B_base, imu_rate_.estimate_of(*step));
   imu_rate_.note(*step, T_map_odom, T_B_base);
+  stamp(*step, base, inputs_.clock_set_by());
   outputs_.publish(*step, base, T_map_odom);
   if (is_tracking(step->status)) outputs_.publish_cameras(step->t, odometry_.rig());
   return true;

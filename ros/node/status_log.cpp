@@ -36,6 +36,11 @@ std::vector<std::string> troubles_of(const std::string& topic, const InputCounte
     all.push_back(topic +
                   ": time goes back within messages: the driver loses data at high rates; lower its bias or rate");
   if (input.time_ahead > 0) all.push_back(topic + ": time jumps ahead within messages: the driver loses data");
+  for (const ClockStep& step : input.clock_steps)
+    all.push_back(fmt::format("{}: the clock of {} was set by {:+.3f} s: {}", topic,
+                              step.of_stamps ? "the stamps" : "the sensor",
+                              to_seconds(step.of_stamps ? step.stamps_by : -step.stamps_by),
+                              step.of_stamps ? "the estimate goes on" : "it is aligned anew"));
   if (input.stamp_jitter > kMostJitter)
     all.push_back(topic + ": stamps of the messages are those of their arrival; the clock of the sensor is used");
   return all;

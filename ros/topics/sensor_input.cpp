@@ -14,6 +14,7 @@
 namespace edged::node {
 namespace {
 
+constexpr Duration kStep = std::chrono::milliseconds(25);  // SensorClock takes more for a clock that was set
 constexpr Duration kJumpAhead = std::chrono::seconds(1);
 constexpr std::uint64_t kMostMissed = 1'000'000;                        // a larger gap is a new way of counting
 constexpr Duration kShortestInterval = std::chrono::microseconds(100);  // no IMU is faster
@@ -58,6 +59,7 @@ std::optional<Measurement> SensorInput::read(const WireMessage& message) {
   } else if (const auto* batch = std::get_if<EventBatch>(&*measurement)) {
     counters_.events += batch->events.size();
     counters_.left_out = decoder_.left_out();
+    counters_.clock_steps = decoder_.clock().steps();
   }
   return measurement;
 }
@@ -76,11 +78,8 @@ Measurement SensorInput::decode(const WireMessage& message) {
       GrayImage gray = read_frame(message.type, reader);
       return Frame{gray.t, camera_, std::move(gray.image)};
     }
-    case Role::Imu: {
-      const ImuSample sample = read_imu(reader);
-      if (wire_ == Wire::Cdr) note_interval(sample.t);
-      return sample;
-    }
+    case Role::Imu:
+      return read_imu(reader);
     default:
       return read_external(message.type, reader);
   }
@@ -104,7 +103,7 @@ void SensorInput::note_packet(const EventPacket& packet, const std::vector<Event
   const std::lock_guard lock(mutex_);
   counters_.time_back += back;
   counters_.time_ahead += ahead;
-  counters_.stamp_jitter = std::max(counters_.stamp_jitter, jitter);
+  if (jitter < kStep) counters_.stamp_jitter = std::max(counters_.stamp_jitter, jitter);
 }
 
 /// Numbers rise by one. If they do not rise, the sender does not count, or has restarted.
@@ -118,7 +117,8 @@ void SensorInput::note_number(std::uint64_t number) {
 }
 
 /// Samples of ROS 2 have no number, but a rate.
-void SensorInput::note_interval(Timestamp stamp) {
+void SensorInput::note_time(Timestamp stamp) {
+  if (role_ != Role::Imu || wire_ != Wire::Cdr) return;
   const Duration interval = last_stamp_ ? stamp - *last_stamp_ : Duration(0);
   last_stamp_ = stamp;
   if (interval <= Duration(0) || interval > kLongestGap) return;

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // A driver and a subscriber on Fast DDS: publishes a recording as drivers do, keeps what `edged ros2` publishes.
-// Usage: edged_ros2_peer RECORDING|none OUT [skip=N] [from=S] [rate=R] [reliable=1] [listen=S] [node=NAME]
-// [interfaces=2] [rig=NAME] [loss=PERCENT] [nodes=N] [base=FRAME] Writes OUT.tum (poses in the map), OUT.odom.tum,
-// OUT.prediction.tum and OUT.json; without a recording also OUT.ready once the node publishes to it. skip: packet
-// numbers that are never sent; loss: packets of the network that are; nodes: it waits for so many; listen: ends so long
-// after the last pose; base: on /tf_static the body is 0.2 m in front of that frame.
+// Usage: edged_ros2_peer RECORDING|none OUT [key=value ...], with keys skip (numbers of packets that are never sent),
+// loss [%] (packets of the network that are), from [s], rate, reliable=1, listen [s] (ends so long after the last
+// pose), node=NAME, nodes=N (it waits for so many), interfaces=2, rig=NAME, base=FRAME (on /tf_static the body is 0.2 m
+// in front of it), set_at, set_by [s] (the clock of the stamps is set). Writes OUT.tum (poses in the map),
+// OUT.odom.tum, OUT.prediction.tum and OUT.json; without a recording also OUT.ready once the node publishes to it.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -36,9 +36,9 @@ double number_of(const Options& options, const std::string& key, double otherwis
   return found == options.end() ? otherwise : std::stod(found->second);
 }
 
-std::string image_bytes(const Frame& frame) {
+std::string image_bytes(const Frame& frame, Timestamp t) {
   Encoder out(frame.image.total() + 256);
-  out.header(to_ns(frame.t), frame.camera);
+  out.header(to_ns(t), frame.camera);
   out << static_cast<std::uint32_t>(frame.image.rows) << static_cast<std::uint32_t>(frame.image.cols)
       << std::string("mono8") << std::uint8_t{0} << static_cast<std::uint32_t>(frame.image.cols);
   const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
@@ -46,9 +46,9 @@ std::string image_bytes(const Frame& frame) {
   return out.bytes();
 }
 
-std::string imu_bytes(const ImuSample& sample) {
+std::string imu_bytes(const ImuSample& sample, Timestamp t) {
   Encoder out(1024);
-  out.header(to_ns(sample.t), "imu");
+  out.header(to_ns(t), "imu");
   out.doubles({0, 0, 0, 1, -1});
   out.zeros(8);
   out.doubles({sample.gyro_B.x(), sample.gyro_B.y(), sample.gyro_B.z()});
@@ -69,6 +69,7 @@ class Driver {
     imu_ = participant.writer("/imu", "sensor_msgs::msg::dds_::Imu_", {reliable, false, 1000});
   }
 
+  void set_clock(Duration by) { set_by_ = by; }
   bool is_subscribed(int nodes) const {
     return readers(events_) >= nodes && readers(image_) >= nodes && readers(imu_) >= nodes;
   }
@@ -81,9 +82,9 @@ class Driver {
         send_packet(std::span(batch->events).subspan(begin, end - begin), sensor);
       }
     } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
-      write(image_, image_bytes(*frame));
+      write(image_, image_bytes(*frame, frame->t + set_by_));
     } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
-      write(imu_, imu_bytes(*sample));
+      write(imu_, imu_bytes(*sample, sample->t + set_by_));
     }
   }
 
@@ -100,7 +101,7 @@ class Driver {
     const std::uint64_t sequence = sequence_++;
     if (skip_ > 0 && sequence % skip_ == skip_ - 1) return;  // lost on the way
     Encoder out(evt3.size() + 256);
-    out.header(to_ns(events.front().t), "event_camera");
+    out.header(to_ns(events.front().t + set_by_), "event_camera");
     out << static_cast<std::uint32_t>(sensor.height) << static_cast<std::uint32_t>(sensor.width) << sequence
         << static_cast<std::uint64_t>(to_ns(events.front().t)) << std::string("evt3") << false
         << std::vector<std::uint8_t>(evt3.begin(), evt3.end());
@@ -108,6 +109,7 @@ class Driver {
   }
 
   const std::uint64_t skip_;
+  Duration set_by_{0};  ///< the clock of the stamps, against that of the event camera
   dds::DataWriter *events_, *image_, *imu_;
   EvtEncoder encoder_{EvtFormat::Evt3};
   std::uint64_t sequence_ = 0;
@@ -324,8 +326,8 @@ void drive_recording(Participant& participant, Driver& driver, const std::string
   const CameraModel& camera = calibration.rig.find(Modality::Events)->model;
   const cv::Size sensor(camera.width(), camera.height());
   const double rate = number_of(options, "rate", 1.0);
-  const Duration from =
-      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(number_of(options, "from", 0)));
+  const auto duration = [&](const char* key, double s) { return duration_from_seconds(number_of(options, key, s)); };
+  const Duration from = duration("from", 0), set_at = duration("set_at", 1e6), set_by = duration("set_by", 0);
   std::optional<Timestamp> first;
   LiveClock pace;
   while (const auto measurement = recording.dataset->next()) {
@@ -333,6 +335,7 @@ void drive_recording(Participant& participant, Driver& driver, const std::string
     if (!t) continue;
     if (!first) first = *t;
     if (*t - *first < from) continue;
+    if (*t - *first > set_at) driver.set_clock(set_by);
     pace.wait_for(*first + duration_from_seconds(to_seconds(*t - *first) / rate), [] { return false; });
     driver.send(*measurement, sensor);
   }

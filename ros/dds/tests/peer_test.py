@@ -202,6 +202,19 @@ class PeerOnFastDds(unittest.TestCase):
         print("the body in the loaded map, and where that was made:", offset, of_body[last][:3])
         self.assertLess(math.dist(offset, of_body[last][:3]), 0.05)
 
+    def test_the_estimate_goes_on_when_the_clock_of_the_stamps_is_set(self):
+        for by in (100, 0.05, -2):
+            node = Node(self, name=f"set{len(str(by))}")
+            self.peer(self.recording, "peer", node=f"set{len(str(by))}", set_at=2.5, set_by=by)
+            node.end()
+            self.assertIn(f"/events: the clock of the stamps was set by {by:+.3f} s: the estimate goes on", node.log())
+            self.assertNotIn("numbers are missing", node.log())
+            rows = [[float(x) for x in line.split()] for line in (self.folder / "peer.tum").read_text().splitlines()]
+            offline = [[t, *pose] for t, pose in poses(self.offline).items()]
+            self.assertGreater(len(rows), len(offline) - 5)
+            self.assertLess(largest_difference(*({i: row[1:] for i, row in enumerate(path)} for path in (rows, offline))), 1e-6)
+            self.assertAlmostEqual(rows[-1][0] - by, 1e-6 * offline[len(rows) - 1][0], 5)
+
     def test_what_it_waits_for_is_logged_within_6_s_and_what_no_node_has_is_refused(self):
         node = Node(self)
         time.sleep(6)

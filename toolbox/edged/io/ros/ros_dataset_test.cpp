@@ -141,6 +141,42 @@ TEST(SensorClock, ExactStampsChangeNothing) {
   }
 }
 
+/// Packets of 1 ms, stamped up to 3 ms late, after 0.5 s by a clock that has been set; returns those that are more than
+/// 5 ms away from the stamps' time.
+int packets_off(SensorClock& clock, Duration step) {
+  std::mt19937 random(1);
+  int off = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Timestamp begin = timestamp_from_ns(std::int64_t{i} * 1'000'000);
+    const Timestamp now = begin + (i < 500 ? Duration(0) : step);
+    const Duration offset = clock.offset(begin, begin, now + Duration(random() % 3'000'000));
+    off += std::chrono::abs(begin + offset - now) > std::chrono::milliseconds(5) ? 1 : 0;
+  }
+  return off;
+}
+
+TEST(SensorClock, IsAlignedAnewWithin25MsWhereOneOfTheTwoIsSet) {
+  for (const double step_s : {-100.0, -20.0, -0.5, -0.05, 0.05, 0.5, 20.0, 100.0}) {
+    SensorClock clock;
+    EXPECT_LE(packets_off(clock, duration_from_seconds(step_s)), 25) << step_s;
+    ASSERT_EQ(clock.steps().size(), 1U) << step_s;
+    EXPECT_NEAR(to_seconds(clock.steps()[0].stamps_by), step_s, 0.005);
+    EXPECT_TRUE(clock.steps()[0].of_stamps);
+  }
+}
+
+/// The computer is busy for 0.3 s, then takes what has waited.
+TEST(SensorClock, IsNotSetByAStall) {
+  SensorClock clock;
+  for (int i = 0; i < 2000; ++i) {
+    const Timestamp begin = timestamp_from_ns(std::int64_t{i} * 1'000'000), stall_ends = timestamp_from_seconds(1.3);
+    const bool waits = i >= 1000 && begin < stall_ends;
+    const Timestamp arrival = waits ? stall_ends + std::chrono::microseconds(10 * (i - 1000)) : begin;
+    EXPECT_LT(std::chrono::abs(clock.offset(begin, begin, arrival)), std::chrono::milliseconds(1)) << i;
+  }
+  EXPECT_TRUE(clock.steps().empty());
+}
+
 /// The small recording with a barometer, a sonar and wheels: 40 messages each, the last of the sonar out of its range.
 fs::path bag_with_sensors(const TempFolder& folder, const BagContainer& container) {
   const Wire wire = container.make(folder.path() / "none")->wire();

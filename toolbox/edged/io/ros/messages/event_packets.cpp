@@ -104,17 +104,38 @@ std::optional<EvtFormat> evt_format(std::string_view encoding) {
 
 }  // namespace
 
+/// Stamps of arrival are late after a stall, too, but by less with each packet that had to wait.
+bool SensorClock::is_set(Timestamp first, Timestamp stamp, Duration off) {
+  constexpr auto kJitter = std::chrono::milliseconds(5), kStep = std::chrono::milliseconds(25),
+                 kConfirmed = std::chrono::milliseconds(20);
+  if (std::chrono::abs(off) < kStep) {
+    apart_.reset();
+    return false;
+  }
+  if (apart_ && first < apart_->since) apart_.reset();
+  if (!apart_ || std::chrono::abs(off - apart_->step.stamps_by) > (first - apart_->since) / 2 + kJitter)
+    apart_ = {first, {off, std::chrono::abs(stamp - last_stamp_) > std::chrono::abs(first - last_first_)}};
+  return first - apart_->since >= kConfirmed;
+}
+
 Duration SensorClock::offset(Timestamp first, Timestamp last, Timestamp stamp) {
   constexpr double kFastest = 5e-4, kTimeConstant_s = 5.0;
+  constexpr std::size_t kMostSteps = 1000;
+  const Duration off = offset_ ? stamp - first - *offset_ : Duration(0);
   if (!offset_) {
     offset_ = stamp - first;
-  } else if (first >= last_last_) {
-    const double passed_s = to_seconds(first - last_first_), off_s = to_seconds(stamp - first - *offset_);
-    const double wanted_s = off_s * std::min(passed_s / kTimeConstant_s, 1.0), most_s = kFastest * passed_s;
+  } else if (is_set(first, stamp, off)) {
+    *offset_ += off;
+    if (steps_.size() < kMostSteps) steps_.push_back({off, apart_->step.of_stamps});
+    apart_.reset();
+  } else if (!apart_ && first >= last_last_) {
+    const double passed_s = to_seconds(first - last_first_);
+    const double wanted_s = to_seconds(off) * std::min(passed_s / kTimeConstant_s, 1.0), most_s = kFastest * passed_s;
     *offset_ += std::max(duration_from_seconds(std::clamp(wanted_s, -most_s, most_s)), last_last_ - first);
   }
   last_first_ = first;
   last_last_ = last;
+  last_stamp_ = stamp;
   return *offset_;
 }
 
