@@ -10,10 +10,9 @@
 namespace edged::node {
 namespace {
 
-constexpr Duration kJump = std::chrono::milliseconds(20);  // less than SensorClock takes for a step
-constexpr auto kDecided = std::chrono::milliseconds(10);   // topics overtake each other by less
-constexpr auto kLongestHold = std::chrono::milliseconds(100);
-constexpr int kAveraged = 8;  // over which the usual one is averaged
+constexpr Duration kJump = std::chrono::milliseconds(20);       // less than SensorClock takes for a step
+constexpr auto kPacketsEnded = std::chrono::milliseconds(500);  // no packet for so long: nothing can be told
+constexpr int kAveraged = 8;                                    // over which the usual one is averaged
 
 void shift(Measurement& measurement, Duration by) {
   if (auto* batch = std::get_if<EventBatch>(&measurement)) {
@@ -40,7 +39,10 @@ void StampClock::follow(Topic& topic, const std::vector<ClockStep>& steps) {
   for (; topic.own_steps < steps.size(); ++topic.own_steps) {
     const ClockStep& step = steps[topic.own_steps];
     if (!step.of_stamps) continue;
-    if (!step_of(topic, step.stamps_by)) steps_.push_back(step.stamps_by);
+    if (!step_of(topic, step.stamps_by)) {
+      steps_.push_back(step.stamps_by);
+      undoubted_.reset();
+    }
     topic.steps = *step_of(topic, step.stamps_by) + 1;
     topic.set_by += step.stamps_by;
   }
@@ -53,7 +55,7 @@ bool StampClock::decide(Topic& topic, Clock::time_point now) const {
     topic.steps = *step + 1;
     return true;
   }
-  return undoubted_at_ > topic.held_since + kDecided || now > topic.held_since + kLongestHold;
+  return (undoubted_ && *undoubted_ >= topic.decided_at) || now - packet_at_ > kPacketsEnded;
 }
 
 /// Whether the measurement has to wait as its stamp jumps while it can be told why.
@@ -63,9 +65,9 @@ bool StampClock::jumps(Topic& topic, Timestamp stamp, Clock::time_point now) {
   const Duration interval = stamp - *topic.last, jump = interval - topic.interval;
   const bool usual = topic.interval == Duration(0) || std::chrono::abs(jump) < kJump;
   if (usual) topic.interval += (interval - topic.interval) / (topic.interval == Duration(0) ? 1 : kAveraged);
-  if (usual || now - undoubted_at_ > kLongestHold) return false;
+  if (usual || now - packet_at_ > kPacketsEnded) return false;
   topic.jump = jump;
-  topic.held_since = now;
+  topic.decided_at = std::max(stamp, *topic.last + topic.interval) + kJump;  // whichever clock is right
   return true;
 }
 
@@ -77,7 +79,8 @@ std::vector<StampClock::Passed> StampClock::pass(const std::string& name, Measur
   const std::optional<Timestamp> stamp = last_stamp(measurement);
   if (sensor != nullptr) {
     follow(topic, sensor->steps());
-    if (!sensor->in_doubt()) undoubted_at_ = now;
+    packet_at_ = now;
+    if (!sensor->in_doubt()) undoubted_ = std::max(undoubted_.value_or(sensor->stamp()), sensor->stamp());
   }
   const bool waits = sensor == nullptr && stamp && jumps(topic, *stamp, now);
   if (stamp) topic.last = *stamp;

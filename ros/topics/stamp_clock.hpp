@@ -18,8 +18,7 @@ namespace edged::node {
 
 /// The clock of a computer is set while it runs, by NTP after its start, that of an event camera is not: its packets
 /// have both, and tell a step from a gap. Measurements of all topics stay on the clock as it was at first. While such
-/// packets come, a measurement whose stamp jumps is held until the next ones decide, or for a tenth of a second. From
-/// any thread.
+/// packets come, a measurement whose stamp jumps is held until their stamps have come as far. From any thread.
 class StampClock {
  public:
   using Clock = std::chrono::steady_clock;
@@ -41,8 +40,8 @@ class StampClock {
     Duration set_by{0};
     std::size_t own_steps = 0, steps = 0;  ///< of its sensor's clock, and of those below, that it has followed
     std::vector<Measurement> held;
-    Duration jump{0};  ///< of the first one of these
-    Clock::time_point held_since;
+    Duration jump{0};      ///< of the first one of these
+    Timestamp decided_at;  ///< stamp of event packets from which on these tell that it was a gap
   };
   bool jumps(Topic& topic, Timestamp stamp, Clock::time_point now);
   void follow(Topic& topic, const std::vector<ClockStep>& steps);
@@ -51,8 +50,9 @@ class StampClock {
 
   mutable std::mutex mutex_;
   std::map<std::string, Topic> topics_;
-  std::vector<Duration> steps_;     ///< of the clock of the stamps
-  Clock::time_point undoubted_at_;  ///< arrival of the newest packet with both clocks where they should be
+  std::vector<Duration> steps_;         ///< of the clock of the stamps
+  Clock::time_point packet_at_;         ///< arrival of the newest packet of events
+  std::optional<Timestamp> undoubted_;  ///< latest stamp of those with both clocks where they should be
 };
 
 }  // namespace edged::node

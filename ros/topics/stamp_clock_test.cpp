@@ -50,16 +50,18 @@ class StampClockSet : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Steps, StampClockSet, ::testing::Values(-100.0, -20.0, -0.5, -0.05, 0.05, 0.5, 20.0, 100.0));
 
 TEST_P(StampClockSet, GoesOnWithoutAGapInAnyTopic) {
-  Stream stream;
   const Duration set_by = duration_from_seconds(GetParam());
-  stream.run(1003, Duration(0));
-  stream.run(2000, set_by);
-  EXPECT_EQ(stream.set_by(), set_by);
-  EXPECT_LE(stream.latest_ms, 25);
-  for (const auto& [topic, interval_ms] : std::map<std::string, int>{{"events", 1}, {"imu", 5}, {"image", 40}}) {
-    const std::vector<int>& passed = stream.of(topic);
-    EXPECT_EQ(passed.size(), 2000U / interval_ms) << topic;
-    for (std::size_t i = 0; i < passed.size(); ++i) ASSERT_EQ(passed[i], static_cast<int>(i) * interval_ms) << topic;
+  for (const int at_ms : {1003, 1035}) {  // soon after a frame, and long after it
+    Stream stream;
+    stream.run(at_ms, Duration(0));
+    stream.run(2000, set_by);
+    EXPECT_EQ(stream.set_by(), set_by);
+    EXPECT_LE(stream.latest_ms, 25);
+    for (const auto& [topic, interval_ms] : std::map<std::string, int>{{"events", 1}, {"imu", 5}, {"image", 40}}) {
+      const std::vector<int>& passed = stream.of(topic);
+      EXPECT_EQ(passed.size(), 2000U / interval_ms) << topic;
+      for (std::size_t i = 0; i < passed.size(); ++i) ASSERT_EQ(passed[i], static_cast<int>(i) * interval_ms) << topic;
+    }
   }
 }
 
@@ -68,7 +70,7 @@ TEST(StampClock, ADroppedFrameAndAGapInAllSensorsAreNoSteps) {
   stream.dropped_ms = 400;
   stream.run(1003, Duration(0));
   EXPECT_EQ(stream.of("image").size(), 25U);
-  EXPECT_LE(stream.latest_ms, 12);
+  EXPECT_LE(stream.latest_ms, 25);
   Stream gap;
   gap.run(1000, Duration(0));
   gap.packets = false;  // and none comes for the next 0.3 s

@@ -29,6 +29,8 @@ class SensorClock {
   void reset() { *this = SensorClock(steps_); }
   const std::vector<ClockStep>& steps() const { return steps_; }
   bool known() const { return offset_.has_value(); }
+  /// That of the newest packet.
+  Timestamp stamp() const { return last_stamp_; }
   /// The newest packet was not where the clocks put it: one of the two may have been set.
   bool in_doubt() const { return apart_.has_value(); }
 
