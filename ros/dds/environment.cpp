@@ -10,7 +10,9 @@
 #include <charconv>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 #include "edged/core/check.hpp"
 
@@ -70,6 +72,17 @@ std::string local_interfaces(bool network) {
   return "<Interfaces>" + other + "<NetworkInterface name=\"lo\"/></Interfaces>";
 }
 
+/// The user's configuration, a text or the name of a file, chooses interfaces: DDS refuses to select one twice.
+bool chooses_interfaces(const std::string& uri) {
+  constexpr std::string_view kFile = "file://";
+  std::string text = uri;
+  if (!uri.starts_with('<')) {
+    std::ifstream file(uri.starts_with(kFile) ? uri.substr(kFile.size()) : uri);
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  return text.find("NetworkInterface") != std::string::npos;
+}
+
 }  // namespace
 
 std::optional<std::string> variable(const char* name) {
@@ -103,7 +116,8 @@ std::string cyclone_config(const Discovery& discovery) {
   if (localhost) peers.insert(peers.begin(), "localhost");
   std::string parts = kInternal;
   if (localhost || off) {
-    const std::string interfaces = localhost ? local_interfaces(discovery.network) : "";
+    const bool chosen = chooses_interfaces(discovery.cyclone_uri);
+    const std::string interfaces = localhost && !chosen ? local_interfaces(discovery.network) : "";
     parts += "<General>" + interfaces + "<AllowMulticast>false</AllowMulticast></General>";
   }
   if (off) parts += "<Discovery><ParticipantIndex>none</ParticipantIndex></Discovery>";

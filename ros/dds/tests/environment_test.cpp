@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include <map>
 
 #include "edged/core/check.hpp"
@@ -55,6 +57,19 @@ TEST(Ros2Environment, PeersAreAskedBesideTheSubnetAndNotWithoutDiscovery) {
 TEST(Ros2Environment, TheUsersOwnConfigurationComesLast) {
   EXPECT_THAT(cyclone_config(discovery_with({{"CYCLONEDDS_URI", "file:///tmp/mine.xml"}})),
               ::testing::EndsWith(",file:///tmp/mine.xml"));
+}
+
+TEST(Ros2Environment, InterfacesAreThoseThatTheUserHasChosen) {
+  const auto with = [](const std::string& uri) {
+    return cyclone_config(discovery_with({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}, {"CYCLONEDDS_URI", uri}}));
+  };
+  const std::string chosen = "<General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces></General>";
+  EXPECT_THAT(with("<Tracing/>"), HasSubstr("<Interfaces>"));
+  EXPECT_EQ(with(chosen).find("<Interfaces>"), with(chosen).rfind("<Interfaces>")) << "those of the user alone";
+  const std::string file = ::testing::TempDir() + "/edged_cyclone.xml";
+  std::ofstream(file) << chosen;
+  EXPECT_THAT(with("file://" + file), Not(HasSubstr("<Interfaces>")));
+  EXPECT_THAT(with(file), Not(HasSubstr("<Interfaces>")));
 }
 
 TEST(Ros2Environment, AValueThatRosDoesNotKnowIsNamed) {
