@@ -120,6 +120,7 @@ int run_ros2(const Ros2Options& options) {
       {discovery, names_of(options.place), config.reliable, config.use_sim_time, options.distribution});
   spdlog::info(fmt::format("rig {}, mode {}, domain {}", config.rig, mode_name(config.mode), discovery.domain));
   node::Node node(config, calibration, transport);
+  for (const char* unused : {"events", "image"}) transport.full_name(unused);  // a mode may do without
   transport.check_remappings();
   print_counters(node.run([] { return interrupt_signal() != 0; }));
   return kExitOk;
