@@ -3,6 +3,7 @@
 #include "commands/ros_arguments.hpp"
 
 #include <yaml-cpp/yaml.h>
+#include <CLI/CLI.hpp>
 
 #include "edged/core/check.hpp"
 
