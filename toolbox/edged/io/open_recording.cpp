@@ -19,10 +19,10 @@
 #include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/hdf5/hdf5.hpp"
+#include "edged/io/parse/imu_table.hpp"
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/ros/ros.hpp"
-#include "edged/io/single_file_folder.hpp"
 #include "edged/io/text/dataset_formats.hpp"
 #include "edged/io/text/event_csv.hpp"
 #include "edged/io/text/sample_files.hpp"
@@ -53,6 +53,93 @@ constexpr std::array kFileFormats = {
 
 bool is_alone_format(ByteSpan head) {
   return std::ranges::any_of(kFileFormats, [head](const FileFormat& f) { return f.alone && f.recognizes(head); });
+}
+
+std::vector<std::string> files_in(const SourcePath& folder) {
+  std::vector<std::string> files = folder.names();
+  const std::set<std::string> external = external_file_names();  // four numbers a line could be an event
+  std::erase_if(files, [&](const std::string& name) { return external.contains(name) || !(folder / name).is_file(); });
+  return files;
+}
+
+/// Without ".gz".
+std::string extension_of(const std::filesystem::path& file) {
+  const std::string last = lower_case(file.extension().string());
+  return last == ".gz" ? lower_case(file.stem().extension().string()) : last;
+}
+
+bool is_text_file(const std::string& name) {
+  const std::string extension = extension_of(name);
+  return extension == ".csv" || extension == ".txt";
+}
+
+std::optional<std::string> only_one(const SourcePath& folder, const std::vector<std::string>& names) {
+  if (names.size() > 1)
+    throw InputError::format("{}: holds several recordings: give one of {}", folder.string(), fmt::join(names, ", "));
+  return names.empty() ? std::nullopt : std::optional(names.front());
+}
+
+/// True if the heading names the axes of an IMU, or if the file name does and the content fits.
+bool holds_imu(const SourcePath& file) try {
+  return find_imu_table(file).named || lower_case(file.name()).find("imu") != std::string::npos;
+} catch (const InputError&) {
+  return false;
+}
+
+/// The name of the only file of the folder that is a recording: one of a format that is `alone`, else a plain event
+/// file. Throws InputError for several.
+std::optional<std::string> find_main_file(const SourcePath& folder) {
+  constexpr std::size_t kHeadBytes = 4096;
+  std::vector<std::string> binary, text;
+  for (const std::string& name : files_in(folder)) {
+    if (is_text_file(name))
+      text.push_back(name);
+    else if (is_alone_format((folder / name).head(kHeadBytes)))
+      binary.push_back(name);
+  }
+  if (const auto path = folder.disk_path(); path && binary.size() > 1)
+    for (const std::string& first : binary)  // the parts of a bag are one recording
+      if (split_bag_parts(*path / first).size() == binary.size()) return first;
+  if (!binary.empty()) return only_one(folder, binary);
+  std::erase_if(text, [&folder](const std::string& name) { return !find_event_form(folder / name); });
+  return only_one(folder, text);
+}
+
+/// The only text file of the folder, without those named, that holds IMU samples by its heading or its name. Of
+/// several, none is chosen, with a warning.
+std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::set<std::string>& others) {
+  std::vector<std::string> found = files_in(folder);
+  std::erase_if(found, [&](const std::string& name) {
+    return others.contains(name) || !is_text_file(name) || !holds_imu(folder / name);
+  });
+  if (found.size() > 1)
+    spdlog::warn(fmt::format("{}: several files hold IMU samples, none is read: give one to --imu", folder.string()));
+  return found.size() == 1 ? std::optional(folder / found.front()) : std::nullopt;
+}
+
+/// Logs the subfolders, and the files with data, pictures or a calibration, that are not read.
+void warn_unread(const SourcePath& folder, const std::set<std::string>& read) {
+  static const std::set<std::string> kData = {".csv",   ".txt", ".bag",  ".raw", ".dat", ".aedat4",
+                                              ".aedat", ".h5",  ".db3",  ".zip", ".npz", ".mcap",
+                                              ".npy",   ".mat", ".hdf5", ".mp4", ".avi"};
+  static const std::set<std::string> kCalibrations = {".yaml", ".yml", ".json", ".xml"};
+  static const std::set<std::string> kPictures = {".png", ".jpg", ".jpeg", ".bmp", ".pgm"};
+  std::vector<std::string> names;
+  std::size_t pictures = 0;
+  bool calibrations = false;
+  for (const std::string& name : folder.names()) {
+    const std::string lower = lower_case(name), extension = extension_of(name);
+    const bool about = lower.starts_with("readme") || lower.starts_with("license") || lower.starts_with('.');
+    if (about || read.contains(name)) continue;
+    const bool is_folder = (folder / name).is_folder(), calibration = !is_folder && kCalibrations.contains(extension);
+    calibrations |= calibration;
+    if (is_folder || calibration || kData.contains(extension)) names.push_back(is_folder ? name + "/" : name);
+    if (!is_folder && kPictures.contains(extension)) ++pictures;
+  }
+  if (pictures > 0) names.push_back(fmt::format("{} pictures", pictures));
+  if (!names.empty())
+    spdlog::warn(fmt::format("{}: not read: {}{}", folder.string(), fmt::join(names, ", "),
+                             calibrations ? " (a calibration only where --calib names it)" : ""));
 }
 
 /// Any format on disk, but within an archive plain events only: the other formats need random access.
@@ -118,7 +205,7 @@ std::optional<Recording> try_ecd(const SourcePath& folder, const Rig* rig, const
   if (!is_ecd_folder(folder)) return std::nullopt;
   // An imu.txt alone does not identify the Event-Camera Dataset if another file has the events.
   const bool imu_alone = !(folder / "events.txt").is_file() && !find_ecd_image_list(folder);
-  if (const auto file = imu_alone ? find_main_file(folder, is_alone_format) : std::nullopt)
+  if (const auto file = imu_alone ? find_main_file(folder) : std::nullopt)
     return open_single_file_folder(folder, *file, rig, options);
   Recording recording = open_ecd(folder, rig, options);
   // Files of further cameras are known, even if the run uses the first only.
@@ -157,7 +244,7 @@ std::optional<Recording> try_hdf5_folder(const SourcePath& folder, const Rig* ri
 
 std::optional<Recording> try_single_file_folder(const SourcePath& folder, const Rig* rig,
                                                 const RecordingOptions& options) {
-  const auto file = find_main_file(folder, is_alone_format);
+  const auto file = find_main_file(folder);
   return file ? std::optional(open_single_file_folder(folder, *file, rig, options)) : std::nullopt;
 }
 
