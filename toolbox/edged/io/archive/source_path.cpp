@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <fstream>
 
 #include "edged/core/check.hpp"
@@ -17,69 +16,6 @@ namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
-class DiskSource final : public ByteSource {
- public:
-  explicit DiskSource(const fs::path& file) : name_(file.string()), file_(std::fopen(name_.c_str(), "rb")) {
-    if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
-    std::setvbuf(file_.get(), nullptr, _IONBF, 0);
-    std::error_code failed;
-    if (const std::uintmax_t size = fs::file_size(file, failed); !failed) left_ = size;
-  }
-
-  std::size_t read(std::span<char> to) override {
-    const std::size_t got = std::fread(to.data(), 1, to.size(), file_.get());
-    if (std::ferror(file_.get())) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
-    if (got == 0 && !to.empty() && left_ > 0) refuse_shortened_file(name_);
-    left_ -= std::min<std::uintmax_t>(got, left_);
-    return got;
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-
-  std::string name_;
-  std::unique_ptr<std::FILE, Close> file_;
-  std::uintmax_t left_ = 0;  ///< bytes up to the end that the file had when it was opened
-};
-
-/// A gzip file, of one part or several.
-class GzipSource final : public ByteSource {
- public:
-  explicit GzipSource(const fs::path& file) : name_(file.string()), file_(gzopen(name_.c_str(), "rb")) {
-    if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
-    left_ = most_unpacked(fs::file_size(file));
-  }
-
-  std::size_t read(std::span<char> to) override {
-    const int got = gzread(file_.get(), to.data(), static_cast<unsigned>(to.size()));
-    if (got > 0 && static_cast<std::uint64_t>(got) > left_) throw Damage("unpacks to far more than sensors write");
-    if (got > 0) left_ -= static_cast<std::uint64_t>(got);
-    if (got > 0 || (got == 0 && ended_well())) return static_cast<std::size_t>(got);
-    int error = Z_OK;
-    const std::string text = gzerror(file_.get(), &error);
-    if (error == Z_ERRNO) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
-    throw Damage("damaged or cut: " + text);
-  }
-
- private:
-  /// True if the file ends without an error.
-  bool ended_well() const {
-    int error = Z_OK;
-    gzerror(file_.get(), &error);
-    return error == Z_OK;
-  }
-
-  struct Close {
-    void operator()(gzFile_s* f) const { gzclose(f); }
-  };
-
-  std::string name_;
-  std::unique_ptr<gzFile_s, Close> file_;
-  std::uint64_t left_ = 0;  ///< bytes that may follow
-};
-
 bool is_gzip(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return false;
@@ -88,6 +24,46 @@ bool is_gzip(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return in.read(head, sizeof head) && std::string_view(head, sizeof head) == kMagic;
 }
+
+/// A file on disk. A gzip file, of one part or several, gives its content.
+class DiskSource final : public ByteSource {
+ public:
+  explicit DiskSource(const fs::path& file)
+      : name_(file.string()), file_(gzopen(name_.c_str(), "rb")), packed_(is_gzip(file)) {
+    if (!file_) throw InputError::format("{}: cannot be opened: {}", name_, std::strerror(errno));
+    std::error_code failed;
+    const std::uintmax_t size = fs::file_size(file, failed);
+    if (!failed) left_ = packed_ ? most_unpacked(size) : size;
+  }
+
+  std::size_t read(std::span<char> to) override {
+    const int got = gzread(file_.get(), to.data(), static_cast<unsigned>(to.size()));
+    if (got <= 0) refuse_error();
+    const auto bytes = static_cast<std::uintmax_t>(got);
+    if (packed_ && bytes > left_) throw Damage("unpacks to far more than sensors write");
+    if (!packed_ && bytes == 0 && !to.empty() && left_ > 0) refuse_shortened_file(name_);
+    left_ -= std::min(bytes, left_);
+    return bytes;
+  }
+
+ private:
+  /// Nothing at the end of the file.
+  void refuse_error() const {
+    int error = Z_OK;
+    const std::string text = gzerror(file_.get(), &error);
+    if (error == Z_ERRNO) throw InputError::format("{}: cannot be read: {}", name_, std::strerror(errno));
+    if (error != Z_OK) throw Damage("damaged or cut: " + text);
+  }
+
+  struct Close {
+    void operator()(gzFile_s* f) const { gzclose(f); }
+  };
+
+  std::string name_;
+  std::unique_ptr<gzFile_s, Close> file_;
+  bool packed_;
+  std::uintmax_t left_ = 0;  ///< bytes that may follow: of a file that is not packed, those it had when it was opened
+};
 
 }  // namespace
 
@@ -132,7 +108,6 @@ std::string SourcePath::name() const {
 std::unique_ptr<ByteSource> SourcePath::open() const {
   if (archive_) return archive_->open(path_);
   require_regular_file(path_);
-  if (is_gzip(path_)) return std::make_unique<GzipSource>(path_);
   return std::make_unique<DiskSource>(path_);
 }
 
