@@ -4,14 +4,36 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
+#include <typeindex>
 #include <vector>
 
-#include "common/board.hpp"
 #include "common/config_source.hpp"
 #include "common/source.hpp"
 
 namespace edged {
+
+/// Values by their types: how parts of a run share what they know without knowing each other. Each is made when it is
+/// first asked for, and stays where it is. Not for several threads; the values may be.
+class Board {
+ public:
+  template <typename T>
+  T& get() {
+    std::shared_ptr<void>& value = values_[typeid(T)];
+    if (!value) value = std::make_shared<T>();
+    return *static_cast<T*>(value.get());
+  }
+  /// The value must be there.
+  template <typename T>
+  const T& get() const {
+    return *static_cast<const T*>(values_.at(typeid(T)).get());
+  }
+
+ private:
+  std::map<std::type_index, std::shared_ptr<void>> values_;
+};
 
 struct RunOptions {
   SourceOptions source;
