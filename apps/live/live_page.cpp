@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "live/live_page.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
-#include <charconv>
 #include <condition_variable>
 #include <fstream>
 #include <iterator>
@@ -276,22 +273,6 @@ class ServedPage : public RunObserver {
 };
 
 }  // namespace
-
-std::optional<ServeAddress> parse_serve_address(const std::string& text) {
-  ServeAddress address;
-  if (text == "true") return address;
-  std::string port = text;
-  if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
-    address.host = text.substr(0, colon);
-    port = text.substr(colon + 1);
-    if (address.host.starts_with('[') && address.host.ends_with(']'))
-      address.host = address.host.substr(1, address.host.size() - 2);
-  }
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
-  const bool whole = error == std::errc() && end == port.data() + port.size();
-  if (!whole || address.host.empty() || address.port < 0 || address.port > 65535) return std::nullopt;
-  return address;
-}
 
 RunOutput live_page_output() {
   return {{},

@@ -8,7 +8,7 @@
 
 #include "common/json_text.hpp"
 #include "live/live_feed.hpp"
-#include "live/live_page.hpp"
+#include "live/page_server.hpp"
 #include "report/report_data.hpp"
 #include "report/report_page.hpp"
 

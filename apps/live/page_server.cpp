@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -92,6 +93,22 @@ bool is_address(const std::string& host) {
 }
 
 }  // namespace
+
+std::optional<ServeAddress> parse_serve_address(const std::string& text) {
+  ServeAddress address;
+  if (text == "true") return address;
+  std::string port = text;
+  if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
+    address.host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (address.host.starts_with('[') && address.host.ends_with(']'))
+      address.host = address.host.substr(1, address.host.size() - 2);
+  }
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
+  const bool whole = error == std::errc() && end == port.data() + port.size();
+  if (!whole || address.host.empty() || address.port < 0 || address.port > 65535) return std::nullopt;
+  return address;
+}
 
 void refuse(httplib::Response& response, int status, const char* text) {
   response.status = status;

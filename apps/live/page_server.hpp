@@ -10,11 +10,22 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace edged {
 
 inline constexpr std::size_t kMostViewers = 12;  ///< each occupies a thread of the server while it is connected
+
+/// --serve: the address of the live page of a run.
+struct ServeAddress {
+  std::string host = "127.0.0.1";
+  int port = 8765;  ///< 0: any that is free
+};
+
+/// The address of "PORT" or "HOST:PORT" ("[::1]:PORT"); the default for "true", the value of a bare flag. Nothing for
+/// any other text.
+std::optional<ServeAddress> parse_serve_address(const std::string& text);
 
 void refuse(httplib::Response& response, int status, const char* text);
 
