@@ -8,6 +8,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/command.hpp"
@@ -22,19 +23,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kAxes = 6;  // gyro, then accelerometer
+constexpr std::array kAxisNames = {"gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"};
+constexpr std::size_t kAxes = kAxisNames.size(), kGyroAxes = 3;  // the others: of the accelerometer
 constexpr double kShortest_s = 60.0, kLongEnough_s = 3600.0;
 constexpr double kMostTurn = 0.02,
                  kMostPush = 0.2;           // [rad/s], [m/s^2] of the mean of a second off the first one: at rest
 constexpr std::size_t kFirstSamples = 200;  // of which the period is taken
 constexpr double kGap = 1.5;                // [periods]
 constexpr double kClear = 3.0;              // [sigma] of a random walk that is significant
-constexpr std::array kAxisNames = {"gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"};
 
-bool is_gyro(int axis) { return axis < 3; }
+using Readings = Eigen::Array<double, kAxes, 1>;
 
-double reading(const ImuSample& sample, int axis) {
-  return is_gyro(axis) ? sample.gyro_B[axis] : sample.accel_B[axis - 3];
+Readings readings_of(const ImuSample& sample) {
+  Readings all;
+  all << sample.gyro_B.array(), sample.accel_B.array();
+  return all;
 }
 
 /// Allan deviations of all axes of a body at rest.
@@ -74,22 +77,20 @@ class RestingImu {
       for (AllanDeviation& axis : axes_) axis.skip_gap();
     }
     last_ = sample.t;
-    for (int axis = 0; axis < kAxes; ++axis) {
-      axes_[static_cast<std::size_t>(axis)].add(reading(sample, axis));
-      second_[axis] += reading(sample, axis);
-    }
+    const Readings readings = readings_of(sample);
+    for (std::size_t axis = 0; axis < kAxes; ++axis) axes_[axis].add(readings[static_cast<Eigen::Index>(axis)]);
+    second_ += readings;
     if (++in_second_ * period_s_ >= 1.0) end_second();
   }
 
   void end_second() {
     second_ /= static_cast<double>(in_second_);
     if (!first_second_) first_second_ = second_;
-    const Eigen::Matrix<double, kAxes, 1> off = (second_ - *first_second_).cwiseAbs();
-    if (off.head<3>().maxCoeff() > kMostTurn || off.tail<3>().maxCoeff() > kMostPush)
+    const Readings off = (second_ - *first_second_).abs();
+    if (off.head<kGyroAxes>().maxCoeff() > kMostTurn || off.tail<kAxes - kGyroAxes>().maxCoeff() > kMostPush)
       throw InputError::format(
           "the IMU moves {:.1f} s after the beginning; record it at rest, on something that does not shake, or choose "
-          "a "
-          "part with --from and --to",
+          "a part with --from and --to",
           to_seconds(*last_ - *begin_));
     second_.setZero();
     in_second_ = 0;
@@ -100,8 +101,8 @@ class RestingImu {
   std::optional<Timestamp> begin_, last_;
   double period_s_ = 0.0;
   std::size_t gaps_ = 0, in_second_ = 0;
-  Eigen::Matrix<double, kAxes, 1> second_ = Eigen::Matrix<double, kAxes, 1>::Zero();
-  std::optional<Eigen::Matrix<double, kAxes, 1>> first_second_;
+  Readings second_ = Readings::Zero();
+  std::optional<Readings> first_second_;
 };
 
 /// What a run takes: of the worst axis; a walk that is not significant is the most that it may be.
@@ -114,10 +115,9 @@ bool is_significant(const SignalNoise& noise) { return noise.walk > kClear * noi
 
 double walk_of(const SignalNoise& noise) { return std::max(noise.walk, kClear * noise.walk_sigma); }
 
-WorstNoise worst(const std::vector<SignalNoise>& axes, bool gyro) {
+WorstNoise worst(std::span<const SignalNoise> axes) {
   WorstNoise out;
-  for (int axis = gyro ? 0 : 3; axis < (gyro ? 3 : kAxes); ++axis) {
-    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
+  for (const SignalNoise& noise : axes) {
     out.white = std::max(out.white, noise.white);
     if (walk_of(noise) > out.walk) out.significant = is_significant(noise);
     out.walk = std::max(out.walk, walk_of(noise));
@@ -126,11 +126,11 @@ WorstNoise worst(const std::vector<SignalNoise>& axes, bool gyro) {
 }
 
 std::string kalibr_yaml(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
-  const WorstNoise gyro = worst(axes, true), accel = worst(axes, false);
+  const std::span all(axes);
+  const WorstNoise gyro = worst(all.first(kGyroAxes)), accel = worst(all.subspan(kGyroAxes));
   return fmt::format(
       "# Of {:.0f} s at rest by the Allan deviation, the worst axis. In motion errors of scale and sampling add to it: "
-      "a\n"
-      "# run wants some 5 (gyro) and 2.5 (accelerometer) times the noise.\n"
+      "a\n# run wants some 5 (gyro) and 2.5 (accelerometer) times the noise.\n"
       "accelerometer_noise_density: {:.3g}  # m/s^2/sqrt(Hz)\n"
       "accelerometer_random_walk: {:.3g}  # m/s^3/sqrt(Hz){}\n"
       "gyroscope_noise_density: {:.3g}  # rad/s/sqrt(Hz)\n"
@@ -144,10 +144,9 @@ std::string kalibr_yaml(const RestingImu& imu, const std::vector<SignalNoise>& a
 std::string text_of(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
   std::string text = fmt::format("{:.0f} s at {:.0f} Hz, {} gaps\n{:<8} {:>12} {:>12} {:>20}\n", imu.length_s(),
                                  imu.rate_Hz(), imu.gaps(), "axis", "noise", "instability", "random walk");
-  for (int axis = 0; axis < kAxes; ++axis) {
-    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
-    text += fmt::format("{:<8} {:>12.3g} {:>12.3g} {:>20}\n", kAxisNames[static_cast<std::size_t>(axis)], noise.white,
-                        noise.instability,
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const SignalNoise& noise = axes[axis];
+    text += fmt::format("{:<8} {:>12.3g} {:>12.3g} {:>20}\n", kAxisNames[axis], noise.white, noise.instability,
                         is_significant(noise) ? fmt::format("{:.2g} +- {:.1g}", noise.walk, noise.walk_sigma)
                                               : fmt::format("at most {:.2g}", walk_of(noise)));
   }
@@ -159,12 +158,12 @@ std::string text_of(const RestingImu& imu, const std::vector<SignalNoise>& axes)
 
 ordered_json json_of(const RestingImu& imu, const std::vector<SignalNoise>& axes) {
   ordered_json json = {{"seconds", imu.length_s()}, {"rate_Hz", imu.rate_Hz()}, {"gaps", imu.gaps()}};
-  for (int axis = 0; axis < kAxes; ++axis) {
-    const SignalNoise& noise = axes[static_cast<std::size_t>(axis)];
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const SignalNoise& noise = axes[axis];
     ordered_json points = ordered_json::array();
-    for (const AllanDeviation::Point& point : imu.axes()[static_cast<std::size_t>(axis)].points())
+    for (const AllanDeviation::Point& point : imu.axes()[axis].points())
       points.push_back({{"tau_s", point.tau_s}, {"deviation", point.deviation}});
-    json["axes"].push_back({{"axis", kAxisNames[static_cast<std::size_t>(axis)]},
+    json["axes"].push_back({{"axis", kAxisNames[axis]},
                             {"noise", noise.white},
                             {"instability", noise.instability},
                             {"random_walk", noise.walk},
@@ -198,11 +197,10 @@ int measure_imu_noise(const CalibOptions& options) {
         "{}: {:.1f} s of IMU samples; record {:.0f} s at rest, for the random walk an hour or more", name,
         imu.length_s(), kShortest_s);
   std::vector<SignalNoise> axes;
-  for (int axis = 0; axis < kAxes; ++axis) {
-    const std::vector<AllanDeviation::Point> points = imu.axes()[static_cast<std::size_t>(axis)].points();
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const std::vector<AllanDeviation::Point> points = imu.axes()[axis].points();
     if (points.size() < 3)
-      throw InputError::format("{}: {} does not change: a dead sensor, or not in its unit", name,
-                               kAxisNames[static_cast<std::size_t>(axis)]);
+      throw InputError::format("{}: {} does not change: a dead sensor, or not in its unit", name, kAxisNames[axis]);
     axes.push_back(fit_noise(points));
   }
   print_result(options.json, json_of(imu, axes), text_of(imu, axes));
