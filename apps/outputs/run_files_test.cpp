@@ -14,6 +14,7 @@
 #include "common/step_numbers.hpp"
 #include "edged/camera/field_of_view.hpp"
 #include "edged/core/check.hpp"
+#include "edged/io/test_support.hpp"
 #include "outputs/states.hpp"
 #include "report/states_table.hpp"
 #include "run/estimated_calibration.hpp"
@@ -26,13 +27,6 @@ namespace fs = std::filesystem;
 
 class RunFolder : public ::testing::Test {
  protected:
-  RunFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::temp_directory_path() / ("edged_run_" + std::string(test->name()));
-    fs::remove_all(folder);
-  }
-  ~RunFolder() override { fs::remove_all(folder); }
-
   void touch(const char* name) { std::ofstream(folder / name) << "x"; }
 
   std::vector<std::string> lines(const char* name) {
@@ -42,8 +36,14 @@ class RunFolder : public ::testing::Test {
     return result;
   }
 
-  fs::path folder;
+  const TempFolder temp;
+  const fs::path folder = temp.path() / "run";  ///< not there yet
 };
+
+TrackingStatus status_of_step(int i) {
+  if (i == 9) return TrackingStatus::Lost;
+  return i < 3 ? TrackingStatus::Initializing : TrackingStatus::Good;
+}
 
 TEST_F(RunFolder, IsMadeWithItsParents) {
   make_run_folder(folder / "a" / "b");
@@ -129,7 +129,7 @@ TEST_F(RunFolder, GivesTheBodysPosesBack) {
     Step step;
     for (int i = 0; i < 20; ++i) {
       step.relocalized = i == 12;
-      step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      step.status = status_of_step(i);
       step.state.T_W_B = SE3(so3::exp({0.1 * i, 0.3, -0.2 * i}), Eigen::Vector3d(i / 3.0, 1e-7 * i, -7.0));
       step.t = timestamp_from_seconds(1e9 + i / 7.0);
       writer.add(step);
@@ -189,7 +189,7 @@ TEST_F(RunFolder, GivesTheCovariancesBack) {
     Step step;
     for (int i = 0; i < 20; ++i) {
       step.relocalized = i == 12;
-      step.status = i < 3 ? TrackingStatus::Initializing : i == 9 ? TrackingStatus::Lost : TrackingStatus::Good;
+      step.status = status_of_step(i);
       step.covariance.reset();
       Eigen::Matrix3d P;
       P << 1.0, 0.1, 0.2, 0.1, 2.0 + i, 0.3, 0.2, 0.3, 3.0 / 7.0;

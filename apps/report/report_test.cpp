@@ -14,6 +14,7 @@
 #include "common/json_text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calibration.hpp"
+#include "edged/io/test_support.hpp"
 #include "outputs/snapshots.hpp"
 #include "outputs/states.hpp"
 #include "report/point_cloud.hpp"
@@ -44,13 +45,6 @@ std::size_t count(const std::string& text, const std::string& word) {
 
 class Report : public ::testing::Test {
  protected:
-  Report() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    top = fs::temp_directory_path() / ("edged_report_" + std::string(test->name()));
-    fs::remove_all(top);
-  }
-  ~Report() override { fs::remove_all(top); }
-
   /// A run folder of `edged run`, with a circle 1 % too large.
   fs::path make_run(const std::string& name, bool with_truth, int steps = 200) {
     const fs::path folder = top / name;
@@ -115,7 +109,8 @@ class Report : public ::testing::Test {
     return step;
   }
 
-  fs::path top;
+  const TempFolder temp;
+  const fs::path top = temp.path();
   Snapshots snapshots;
 };
 
@@ -306,7 +301,6 @@ TEST_F(Report, PacksDensePointsAndVoxelsInTheWorldThatIsShown) {
 }
 
 TEST_F(Report, ThinsOutDensePointsEvenly) {
-  fs::create_directories(top);
   write_file(top / "dense.ply", row_of_points(1000));
   const PointCloud cloud = read_cloud(top / "dense.ply", 10);
   EXPECT_EQ(cloud.all, 1000U);

@@ -37,19 +37,16 @@ DenseRun map_densely(const Flight& flight, Mode mode, const OdometryConfig& conf
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});
   DenseRun run;
   std::optional<Timestamp> first;
-  auto next = flight.measurements.begin();
-  drive(
-      odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
-      [&](const Step& step) {
-        if (!first) first = step.t;
-        run.span_s = to_seconds(step.t - *first);
-        if (!is_tracking(step.status)) return true;
-        DenseInstant instant = dense_instant(step, images, odometry.rig());
-        const double before_s = thread_cpu_s();
-        run.mapper.add(std::move(instant));
-        run.cpu_s += thread_cpu_s() - before_s;
-        return true;
-      });
+  drive(odometry, source_of(flight.measurements), [&](const Step& step) {
+    if (!first) first = step.t;
+    run.span_s = to_seconds(step.t - *first);
+    if (!is_tracking(step.status)) return true;
+    DenseInstant instant = dense_instant(step, images, odometry.rig());
+    const double before_s = thread_cpu_s();
+    run.mapper.add(std::move(instant));
+    run.cpu_s += thread_cpu_s() - before_s;
+    return true;
+  });
   const double before_s = thread_cpu_s();
   run.mapper.finish();
   run.cpu_s += thread_cpu_s() - before_s;

@@ -51,6 +51,12 @@ const Flight& shared_flight(const std::string& preset, int seed, double duration
   return flight->second;
 }
 
+std::function<std::optional<Measurement>()> source_of(std::span<const Measurement> measurements) {
+  return [next = measurements.begin(), end = measurements.end()]() mutable {
+    return next == end ? std::nullopt : std::optional<Measurement>(*next++);
+  };
+}
+
 Flight simulate_flight(const SimulatorConfig& config) {
   Simulator simulator(config);
   return read_flight(simulator, simulator.calibration());
@@ -61,10 +67,10 @@ FlightRun run_flight(const Calibration& calibration, std::span<const Measurement
   Odometry odometry(calibration.rig, calibration.imu, mode, config, {kInOrder});
   FlightRun run;
   const Rig used = used_cameras(calibration.rig, mode, config.cameras);
-  const auto next_measurement = [&, next = measurements.begin()]() mutable -> std::optional<Measurement> {
-    if (next == measurements.end()) return std::nullopt;
-    run.statistics.add_visual(*next, used);
-    return *next++;
+  const auto next_measurement = [&, source = source_of(measurements)] {
+    std::optional<Measurement> next = source();
+    if (next) run.statistics.add_visual(*next, used);
+    return next;
   };
   drive(odometry, next_measurement, [&](Step step) {
     run.statistics.add(step);

@@ -3,6 +3,7 @@
 // The whole system in memory: a recording, a run through it, and how well the run did.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,9 @@ struct Flight {
   std::vector<Measurement> measurements;
   std::optional<GroundTruth> truth;
 };
+
+/// Copies of the measurements one by one, for `drive`.
+std::function<std::optional<Measurement>()> source_of(std::span<const Measurement> measurements);
 
 Flight read_flight(Dataset& dataset, const Calibration& calibration);
 Flight simulate_flight(const SimulatorConfig& config);

@@ -90,16 +90,13 @@ MappedRoom map_of(const Flight& flight, Mode mode) {
   const std::vector<RigCamera> images = image_cameras(used);
   for (const RigCamera& camera : used.cameras)
     model.cameras.push_back({camera.name, ideal_pinhole(camera.model), camera.modality});
-  auto next = flight.measurements.begin();
-  drive(
-      odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
-      [&](const Step& step) {
-        if (!is_tracking(step.status)) return true;
-        for (const KeyframeRecord& keyframe : step.marginalized_keyframes) insert_keyframe(live_tree, keyframe);
-        if (step.keyframe) add_images(model, step);
-        mapper.add(dense_instant(step, images, odometry.rig()));
-        return true;
-      });
+  drive(odometry, source_of(flight.measurements), [&](const Step& step) {
+    if (!is_tracking(step.status)) return true;
+    for (const KeyframeRecord& keyframe : step.marginalized_keyframes) insert_keyframe(live_tree, keyframe);
+    if (step.keyframe) add_images(model, step);
+    mapper.add(dense_instant(step, images, odometry.rig()));
+    return true;
+  });
   const Trajectory poses = odometry.final_trajectory().poses;
   place(model, poses, odometry.rig());
   triangulate(model);

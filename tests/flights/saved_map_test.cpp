@@ -32,18 +32,15 @@ MappedRun run_with(const Flight& flight, Mode mode, const std::string& map, cons
   Odometry odometry(flight.calibration.rig, flight.calibration.imu, mode, config, {kInOrder});
   if (!map.empty()) odometry.load_map(map);
   MappedRun run;
-  auto next = flight.measurements.begin();
-  drive(
-      odometry, [&] { return next == flight.measurements.end() ? std::nullopt : std::optional<Measurement>(*next++); },
-      [&](const Step& step) {
-        if (step.relocalized && !run.found) {
-          EXPECT_TRUE(run.poses.empty() || !config.map.localize_only);
-          run.found = step.t;
-          run.poses.clear();
-        }
-        if (is_tracking(step.status)) run.poses.push_back({step.t, step.state.T_W_B});
-        return true;
-      });
+  drive(odometry, source_of(flight.measurements), [&](const Step& step) {
+    if (step.relocalized && !run.found) {
+      EXPECT_TRUE(run.poses.empty() || !config.map.localize_only);
+      run.found = step.t;
+      run.poses.clear();
+    }
+    if (is_tracking(step.status)) run.poses.push_back({step.t, step.state.T_W_B});
+    return true;
+  });
   run.map = odometry.save_map();
   return run;
 }

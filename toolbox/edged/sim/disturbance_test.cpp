@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "edged/core/check.hpp"
+#include "edged/sim/motion/test_derivatives.hpp"
 #include "edged/sim/sensors/renderer.hpp"
 #include "edged/sim/test_recording.hpp"
 
@@ -367,18 +368,10 @@ TEST(EventStorm, FiresAsOftenAsItSaysAllOverTheArray) {
 
 TEST(DisturbedTrajectory, DerivativesAgreeWithDifferences) {
   for (const char* kind : {"gyro-saturation", "shake", "blank-wall", "pure-rotation", "standstill", "put-down"}) {
+    SCOPED_TRACE(kind);
     const Simulator simulator(disturbed(kind, 1.0, 1.6));
-    constexpr double h = 1e-5;
-    for (double t = 0.4013; t < 3.0; t += 0.0737) {
-      const Kinematics k = simulator.trajectory().at(t), before = simulator.trajectory().at(t - h),
-                       after = simulator.trajectory().at(t + h);
-      const Eigen::Vector3d v = (after.T_W_B.translation() - before.T_W_B.translation()) / (2 * h);
-      const Eigen::Vector3d a = (after.v_W - before.v_W) / (2 * h);
-      const Eigen::Vector3d omega = so3::log(before.T_W_B.rotation().conjugate() * after.T_W_B.rotation()) / (2 * h);
-      EXPECT_LT((v - k.v_W).norm(), 1e-5) << kind << t;
-      EXPECT_LT((a - k.a_W).norm(), 1e-4) << kind << t;
-      EXPECT_LT((omega - k.omega_B).norm(), 1e-5) << kind << t;
-    }
+    for (double t = 0.4013; t < 3.0; t += 0.0737)
+      expect_derivatives_at(t, simulator.trajectory(), {.step_s = 1e-5, .a_W = 1e-4});
   }
 }
 

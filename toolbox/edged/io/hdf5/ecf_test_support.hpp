@@ -22,12 +22,12 @@ class EcfPacker {
       put_side_by_side<std::uint32_t>([](const EcfEvent& e) { return e.y << 12 | e.x << 1 | e.p; });
       return;
     }
-    put_rows();
+    put_runs<std::uint16_t, 31>([](const EcfEvent& e) { return e.y; });
     if (packing == EcfPacking::ColumnsSideBySide) {
       put_side_by_side<std::uint16_t>([](const EcfEvent& e) { return e.x << 1 | e.p; });
     } else {
       put_columns();
-      put_polarities();
+      put_runs<std::uint8_t, 127>([](const EcfEvent& e) { return e.p; });
     }
   }
 
@@ -63,11 +63,13 @@ class EcfPacker {
     }
   }
 
-  void put_rows() {
+  /// Each value with the number of events that have it; a word holds kMost, and from there on the number follows.
+  template <typename Word, std::size_t kMost, typename Value>
+  void put_runs(const Value& value) {
     for (std::size_t i = 0; i < events_.size();) {
-      const std::size_t count = run(i, [](const EcfEvent& e) { return e.y; });
-      put(static_cast<std::uint16_t>(static_cast<std::size_t>(events_[i].y) << 5 | std::min<std::size_t>(count, 31)));
-      if (count >= 31) put(static_cast<std::uint16_t>(count));
+      const std::size_t count = run(i, value);
+      put(static_cast<Word>(static_cast<std::size_t>(value(events_[i])) * (kMost + 1) + std::min(count, kMost)));
+      if (count >= kMost) put(static_cast<std::uint16_t>(count));
       i += count;
     }
   }
@@ -82,15 +84,6 @@ class EcfPacker {
           ++i;
         }
       put(static_cast<std::uint16_t>(word));
-    }
-  }
-
-  void put_polarities() {
-    for (std::size_t i = 0; i < events_.size();) {
-      const std::size_t count = run(i, [](const EcfEvent& e) { return e.p; });
-      put(static_cast<std::uint8_t>(static_cast<std::size_t>(events_[i].p) << 7 | std::min<std::size_t>(count, 127)));
-      if (count >= 127) put(static_cast<std::uint16_t>(count));
-      i += count;
     }
   }
 

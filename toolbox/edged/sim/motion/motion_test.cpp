@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "edged/sim/motion/test_derivatives.hpp"
+
 namespace edged {
 namespace {
 
@@ -46,16 +48,8 @@ class MotionKinds : public testing::TestWithParam<NamedMotion> {};
 
 TEST_P(MotionKinds, HaveDerivativesThatAgreeWithDifferences) {
   const ContinuousTrajectory trajectory = motion_of(GetParam().config);
-  constexpr double h = 1e-4;
-  for (double t = 0.501; t < kDuration_s - 0.5; t += 0.0737) {
-    const Kinematics k = trajectory.at(t), before = trajectory.at(t - h), after = trajectory.at(t + h);
-    const Eigen::Vector3d v = (after.T_W_B.translation() - before.T_W_B.translation()) / (2 * h);
-    const Eigen::Vector3d a = (after.v_W - before.v_W) / (2 * h);
-    const Eigen::Vector3d omega = so3::log(before.T_W_B.rotation().conjugate() * after.T_W_B.rotation()) / (2 * h);
-    EXPECT_LT((v - k.v_W).norm(), 1e-5) << t;
-    EXPECT_LT((a - k.a_W).norm(), 1e-3) << t;
-    EXPECT_LT((omega - k.omega_B).norm(), 1e-5) << t;
-  }
+  for (double t = 0.501; t < kDuration_s - 0.5; t += 0.0737)
+    expect_derivatives_at(t, trajectory, {.step_s = 1e-4, .a_W = 1e-3});
 }
 
 INSTANTIATE_TEST_SUITE_P(, MotionKinds, testing::ValuesIn(new_motions()),

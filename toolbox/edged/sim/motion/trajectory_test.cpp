@@ -13,6 +13,7 @@
 #include "edged/imu/preintegration.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 #include "edged/sim/motion/motion.hpp"
+#include "edged/sim/motion/test_derivatives.hpp"
 #include "edged/sim/sensors/imu_model.hpp"
 
 namespace edged {
@@ -22,16 +23,7 @@ const MotionConfig kLively{.file = {}, .max_angle_deg = 60.0, .max_speed = 1.5, 
 
 TEST(ContinuousTrajectory, DerivativesAgreeWithDifferences) {
   const ContinuousTrajectory trajectory = make_motion(kLively, 6.0, SE3(), 3);
-  constexpr double h = 1e-4;
-  for (double t = 0.501; t < 5.5; t += 0.0737) {
-    const Kinematics k = trajectory.at(t), before = trajectory.at(t - h), after = trajectory.at(t + h);
-    const Eigen::Vector3d v = (after.T_W_B.translation() - before.T_W_B.translation()) / (2 * h);
-    const Eigen::Vector3d a = (after.v_W - before.v_W) / (2 * h);
-    const Eigen::Vector3d omega = so3::log(before.T_W_B.rotation().conjugate() * after.T_W_B.rotation()) / (2 * h);
-    EXPECT_LT((v - k.v_W).norm(), 1e-5) << t;
-    EXPECT_LT((a - k.a_W).norm(), 1e-4) << t;
-    EXPECT_LT((omega - k.omega_B).norm(), 1e-5) << t;
-  }
+  for (double t = 0.501; t < 5.5; t += 0.0737) expect_derivatives_at(t, trajectory, {.step_s = 1e-4, .a_W = 1e-4});
 }
 
 TEST(ContinuousTrajectory, RestsAtFirstAndThenReachesItsPeaks) {
