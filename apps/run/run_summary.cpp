@@ -263,6 +263,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"packets after the last IMU sample dropped", packets.packets_after_imu > 1 ? packets.packets_after_imu : 0},
       {"packets dropped during gaps of the IMU", packets.packets_overflow},
       {"late events dropped", packets.events_late},
+      {"events of bursts beyond any sensor's rate dropped", packets.events_surplus},
       {"events of flickering lamps left out", packets.events_flicker},
       {"late frames dropped", packets.frames_late},
       {"times of 5 s without a frame", packets.frames_missing},

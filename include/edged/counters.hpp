@@ -58,6 +58,7 @@ struct PacketizerCounters {
   std::size_t packets_after_imu = 0;   ///< dropped at the end: after the last IMU sample
   std::size_t packets_overflow = 0;    ///< dropped: the IMU stayed away for too long
   std::size_t events_late = 0;         ///< dropped: older than an event or a cut before them
+  std::size_t events_surplus = 0;      ///< dropped: of bursts that no packet can hold, more than 4 million in 30 ms
   std::size_t events_flicker = 0;      ///< dropped: of lamps that flicker
   std::size_t events_lost = 0;         ///< new events of dropped packets, and those after the last cut
   std::size_t frames_late = 0;         ///< dropped: not after the last cut

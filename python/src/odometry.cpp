@@ -123,6 +123,7 @@ std::map<std::string, std::size_t> counters(PyOdometry& self) {
                                               {"packets_after_imu", out.packets_after_imu},
                                               {"packets_overflow", out.packets_overflow},
                                               {"events_late", out.events_late},
+                                              {"events_surplus", out.events_surplus},
                                               {"events_flicker", out.events_flicker},
                                               {"events_lost", out.events_lost},
                                               {"frames_late", out.frames_late},

@@ -89,6 +89,7 @@ std::vector<Count> counts_of(const NodeHealth& health) {
                             {"packets after the IMU", packets.packets_after_imu, false},
                             {"packets dropped, IMU away too long", packets.packets_overflow, true},
                             {"events late", packets.events_late, true},
+                            {"events of bursts beyond any sensor's rate", packets.events_surplus, true},
                             {"events of flickering lamps", packets.events_flicker, false},
                             {"events of dropped packets", packets.events_lost, false},
                             {"frames late", packets.frames_late, true}};

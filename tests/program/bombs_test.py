@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that unpack to gigabytes cost neither memory nor a crash. Usage: EDGED=path/to/edged bombs_test.py"""
 import os
+import random
 import resource
 import sqlite3
 import struct
@@ -58,9 +59,9 @@ class Bombs(WithFolder):
         self.assertIn(child.returncode, (0, 3, 4), args)
         return 1024 * usage.ru_maxrss
 
-    def assert_costs_little(self, recording):
+    def assert_costs_little(self, recording, *of_run):
         for command in ("info", "doctor", "run"):
-            out = ("--out", self.folder / "run", "--force") if command == "run" else ()
+            out = ("--out", self.folder / "run", "--force", *of_run) if command == "run" else ()
             used = self.memory_of(command, recording, "--rig", "davis240c_ecd", "--quiet", *out)
             self.assertLess(used, MOST_BYTES, f"{command} {recording}")
 
@@ -94,6 +95,16 @@ class Bombs(WithFolder):
                     events.write(lines)
             archive.writestr("imu.txt", "".join(f"{1 + 0.005 * i:.3f} 0 0 9.8 0 0 0\n" for i in range(40)))
         self.assert_costs_little(self.folder / "flight.zip")
+
+    def test_events_of_one_stamp(self):
+        draw = random.Random(1)
+        lines = "".join(f"1.01 {draw.randint(1, 4)} 9 1\n" for _ in range(1_000_000)).encode()
+        with zipfile.ZipFile(self.folder / "flight.zip", "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            with archive.open("events.txt", "w", force_zip64=True) as events:
+                for _ in range(40):  # 640 MB in memory
+                    events.write(lines)
+            archive.writestr("imu.txt", "".join(f"{1 + 0.005 * i:.3f} 0 0 9.8 0 0 0\n" for i in range(40)))
+        self.assert_costs_little(self.folder / "flight.zip", "--mode", "events")
 
     def test_a_view_without_end(self):
         bag = sqlite3.connect(self.folder / "bag.db3")

@@ -27,8 +27,10 @@ struct PipelineTuning {
   // Memory: far above what working sensors queue.
   std::size_t max_queued_bytes = std::size_t{256} << 20U;  ///< events and frames in the sequencer
   std::size_t max_queued_samples = 1'000'000;              ///< samples of each other sensor in the sequencer
-  std::size_t max_waiting_packets = 256;                   ///< packets without their IMU samples
-  std::size_t max_waiting_external = 100'000;              ///< external samples without their packet
+  std::size_t max_burst_events = 4'000'000;  ///< of a camera within burst; one that fires all pixels at once: a million
+  Duration burst = std::chrono::milliseconds(30);  ///< cuts by events are not closer
+  std::size_t max_waiting_packets = 256;           ///< packets without their IMU samples
+  std::size_t max_waiting_external = 100'000;      ///< external samples without their packet
 
   // Event frames (decisions 003, 013).
   double max_parallax_px = 5.0;        ///< image motion by translation over the events of one event frame

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "edged/pipeline/tuning.hpp"
+
 namespace edged {
 namespace {
 
@@ -24,10 +26,17 @@ EventHistory::EventHistory(const RigCamera& camera, const PacketizerConfig& conf
   if (config.remove_flicker) flicker_.emplace(camera.model.width(), camera.model.height());
 }
 
-/// Adds all of them at once, or none if they are not in order, or some may be of lamps.
+/// Whether the newest events have filled a packet that an event at t cannot yet cut.
+bool EventHistory::in_full_burst(Timestamp t) const {
+  constexpr std::size_t kMost = kPipelineTuning.max_burst_events;
+  return events_.size() >= kMost && events_[events_.size() - kMost].t > t - kPipelineTuning.burst;
+}
+
+/// Adds all of them at once, or none if they are not in order, or some may be of a burst or of lamps.
 bool EventHistory::append(const std::vector<Event>& events, Timestamp last_cut) {
   const Timestamp first = events.front().t + offset_;
   if (first <= last_cut || (!events_.empty() && first < events_.back().t)) return false;
+  if (events_.size() + events.size() > kPipelineTuning.max_burst_events) return false;
   if (!std::ranges::is_sorted(events, {}, &Event::t)) return false;
   const std::size_t before = events_.size();
   events_.insert(events_.end(), events.begin(), events.end());
@@ -46,6 +55,8 @@ EventHistory::Dropped EventHistory::add(const std::vector<Event>& events, Timest
     event.t += offset_;
     if (event.t <= last_cut || (!events_.empty() && event.t < events_.back().t)) {
       ++dropped.late;
+    } else if (in_full_burst(event.t)) {
+      ++dropped.surplus;
     } else if (flicker_ && flicker_->drops(event)) {
       ++dropped.flicker;
     } else {

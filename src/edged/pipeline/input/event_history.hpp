@@ -23,6 +23,7 @@ class EventHistory {
   Duration offset() const { return offset_; }
   struct Dropped {
     std::size_t late = 0;     ///< not after the last cut, or before an earlier event
+    std::size_t surplus = 0;  ///< of a burst that is too large for a packet
     std::size_t flicker = 0;  ///< caused by lamps
   };
   /// Adds events, converted from the camera clock to the IMU clock.
@@ -40,6 +41,7 @@ class EventHistory {
 
  private:
   bool append(const std::vector<Event>& events, Timestamp last_cut);
+  bool in_full_burst(Timestamp t) const;
 
   std::string camera_;
   Duration offset_;

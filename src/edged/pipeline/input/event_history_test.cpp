@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/pipeline/tuning.hpp"
+
 namespace edged {
 namespace {
 
@@ -62,6 +64,15 @@ TEST(EventHistory, LeavesOutWhatIsLateOnTheClockOfTheImu) {
   EXPECT_EQ(h.add(events(9, 12), after_ms(8)).late, 1U) << "14 ms is before earlier events";
   EXPECT_EQ(h.give_up(), 9U);
   EXPECT_EQ(h.new_events(), 0U);
+}
+
+TEST(EventHistory, LeavesOutWhatABurstHasBeyondTheLargestPacket) {
+  EventHistory h = history();
+  const std::vector<Event> of_one_stamp(kPipelineTuning.max_burst_events, {after_ms(1), 1, 1, true});
+  EXPECT_EQ(h.add(of_one_stamp, after_ms(0)).surplus, 0U) << "a sensor may send each pixel twice";
+  EXPECT_EQ(h.add(of_one_stamp, after_ms(0)).surplus, of_one_stamp.size());
+  EXPECT_EQ(h.add(events(2, 41), after_ms(0)).surplus, 29U) << "until the burst is over";
+  EXPECT_EQ(h.new_events(), of_one_stamp.size() + 10);
 }
 
 }  // namespace

@@ -97,7 +97,8 @@ void Packetizer::add_events(const EventBatch& batch) {
   if (history == events_.end()) return;
   start_at(batch.events.front().t + history->offset());
   const EventHistory::Dropped dropped = history->add(batch.events, last_cut_);
-  counters_.events_late += dropped.late, counters_.events_flicker += dropped.flicker;
+  counters_.events_late += dropped.late, counters_.events_surplus += dropped.surplus;
+  counters_.events_flicker += dropped.flicker;
 }
 
 void Packetizer::add_frame(Frame frame) {
