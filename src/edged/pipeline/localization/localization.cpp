@@ -95,7 +95,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
       output.correction);
-  session_.uncertainty.place_sigma = place_.unmeasured();
+  session_.uncertainty.place_sigma = place_.doubt(mapper_.relocalizing());
   const TrackingStatus of_odometry = status_.update(result, session_.uncertainty, session_.estimator.initialized(), t);
   const bool relocalized = update_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
@@ -251,7 +251,7 @@ bool Localization::update_map(Timestamp t, const VisionOutput& seen, const Estim
   mapper_.predict(body_.now(), result.standstill);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
   if (!images.empty()) {
-    relocalized = mapper_.localize(t, images);
+    relocalized = mapper_.localize(t, images, place_.doubt(true));
     if (seen.keyframe) mapper_.keyframe(t, images);
   }
   for (const MarginalizedKeyframe& record : result.marginalized_keyframes) mapper_.add_keyframe(record);

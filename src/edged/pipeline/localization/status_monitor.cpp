@@ -24,10 +24,11 @@ void StatusConfig::visit(ConfigFields& fields) {
   fields.add("max_velocity_sigma", max_velocity_sigma,
              {"m/s", 0.01, 100,
               "The status is Degraded while the velocity is less certain than this and a tenth of the speed."});
-  fields.add("max_place_sigma", max_place_sigma,
-             {"m", 0.01, 1000,
-              "The status is Degraded while a gap of all sensors or an unknown velocity leaves the position in the map "
-              "less certain than this, until the body is relocalized."});
+  fields.add(
+      "max_place_sigma", max_place_sigma,
+      {"m", 0.01, 1000,
+       "The status is Degraded while a gap or a loss leaves the position in the map less certain than this, until "
+       "the body is relocalized."});
   fields.add("max_scale_sigma", max_scale_sigma,
              {"", 0.01, 10,
               "The status is Degraded while the way travelled is uncertain by more than this share: the motion is too "

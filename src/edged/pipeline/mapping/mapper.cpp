@@ -135,14 +135,17 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search
   return true;
 }
 
-bool Mapper::localize(Timestamp t, std::span<const PosedImage> images) {
+bool Mapper::localize(Timestamp t, std::span<const PosedImage> images, double place_sigma) {
   // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
   const double interval_s =
       relocalizing_ && !loaded_map_until_ ? kMapTuning.relocalization_interval_s : config_.min_interval_s;
   if (last_search_ && to_seconds(t - *last_search_) < interval_s) return false;
   last_search_ = t;
   matches_.clear();
-  const TimeInterval old_enough{localized_period().since, t - duration_from_seconds(config_.keyframes.min_age_s)};
+  // Far from where dead reckoning has them, older points match by chance.
+  const bool misplaced = relocalizing_ && place_sigma > kMapTuning.gate_sigmas * kMapTuning.same_place_m;
+  const TimeInterval old_enough{misplaced ? started_ : localized_period().since,
+                                t - duration_from_seconds(config_.keyframes.min_age_s)};
   const SE3 T_M_O = odom_to_map_.T_M_O();
   const MapSearch here = search_map(map_, filter_, config_, T_M_O, images, old_enough);
   const std::ptrdiff_t older = here.matched_before(map_, started_);

@@ -41,8 +41,8 @@ class Mapper {
   /// The odometry has reached `now`; at_rest: it is known to stand still.
   void predict(const OdomState& now, bool at_rest = false);
   /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
-  /// by place recognition: true when it has just been relocalized.
-  bool localize(Timestamp t, std::span<const PosedImage> images);
+  /// by place recognition: true when it has just been relocalized. place_sigma: of the body, by a loss or a gap [m].
+  bool localize(Timestamp t, std::span<const PosedImage> images, double place_sigma = 0.0);
   /// The packet has become a keyframe, with these images.
   void keyframe(Timestamp t, std::span<const PosedImage> images);
   /// A keyframe has left the window: kept if it is worth it.
@@ -72,6 +72,8 @@ class Mapper {
   bool awaiting_relocalization() const { return loaded_map_until_.has_value(); }
   /// With localize_only: the body has been relocalized in the loaded map, and no loss has followed.
   bool localized() const { return !relocalizing_ && !loaded_map_until_ && !map_.keyframes().empty(); }
+  /// Older keyframes show where the body is after a loss or a gap, but none has been matched since.
+  bool relocalizing() const { return relocalizing_; }
   /// Time since the last map match or rest [s].
   double unmatched_s() const { return to_seconds(predicted_ - last_match_); }
 
