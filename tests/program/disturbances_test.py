@@ -20,7 +20,7 @@ GYRO, ACCEL = (4, 5, 6), (1, 2, 3)  # columns of imu.txt
 @dataclasses.dataclass
 class Row:
     """A disturbance, and what both must say of it. {at} in a pattern is the time at which it begins, to 0.1 s."""
-    changes: dict[str, typing.Callable]  # file: its lines from those of the recording
+    changes: dict[str, typing.Callable | str]  # file: its lines from those of the recording, or the file that takes its place
     severity: str  # of the first finding above a note; "none"; "refused": by the reader
     says: str = "."
     remedy: str = ""
@@ -171,6 +171,8 @@ ROWS = {
                     r"camera frames: t_imu = t_cam \+15\d\.\d ms", r"set time_offset of this camera to 0\.15", doctor=3, run=5, never="rotation|truth"),
     "accelerometer_turned": Row(imu(lambda rows, _: [[row[0], -row[2], row[1], *row[3:]] for row in rows]), "error",
                                 "accelerometer: gravity does not turn in its axes", r"\(y, -x, z\) would fit", doctor=3, run=5),
+    "accelerometer_4_percent": Row(imu(lambda rows, _: [[row[0], *(1.04 * v for v in row[1:4]), *row[4:]] for row in rows]), "warning",
+                                   r"accelerometer: it reads 10\.\d\d m/s\^2 at rest", "calibrate it at rest in six attitudes"),
     "noise_too_large": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: 1000 * n), "error",
                            r"gyro: calibrated noise of 0\.12 .* 0\.0001\d* at rest", "density", doctor=3, run=5, never="scale"),
     "noise_too_small": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: n / 1000), "warning",
@@ -201,6 +203,10 @@ ROWS_OF_TWO = {
     "two_clean": Row({}, "none", run=0),
     "two_exchanged": Row(exchanged("images", "images2"), "error", "cameras frames and frames2: their images match only as if exchanged", "exchange their topics", doctor=3, run=5,
                          never="rig|differs|covariance"),
+    "two_clean_by_events": Row({"events.txt": "events.txt", "events2.txt": "events2.txt"}, "none", run=0, mode="events"),
+    "two_exchanged_by_events": Row({"events.txt": "events2.txt", "events2.txt": "events.txt"}, "error",
+                                   "cameras events and events2: their images match only as if exchanged", "exchange their topics", doctor=3, run=5,
+                                   never="rig|differs|covariance", mode="events"),
 }
 
 
@@ -212,7 +218,9 @@ class Disturbed(WithFlight):
         copy = self.folder / "disturbed"
         copy.mkdir()
         for file in self.flight.iterdir():
-            if file.name in row.changes:
+            if isinstance(other := row.changes.get(file.name), str):
+                os.symlink(self.flight / other, copy / file.name)
+            elif file.name in row.changes:
                 (copy / file.name).write_text("".join(row.changes[file.name](file.read_text().splitlines(True))))
             elif not file.name.startswith("events"):
                 os.symlink(file, copy / file.name)

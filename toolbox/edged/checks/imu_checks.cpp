@@ -9,6 +9,7 @@
 
 #include "edged/checks/check_groups.hpp"
 #include "edged/core/angles.hpp"
+#include "edged/imu/preintegration.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
@@ -227,6 +228,20 @@ void check_accel_unit(const CheckInput& input, Findings& out) {
     out.good(fmt::format("accelerometer in m/s^2 (mean {:.2f})", g));
 }
 
+/// At rest one attitude cannot separate scale from bias. Right recordings read up to 0.1 m/s^2 off (simulator,
+/// mirrors).
+void check_gravity(const CheckInput& input, Findings& out) {
+  constexpr double kLeast = 0.25, kMost = 1.8;  // [m/s^2] beyond the latter it is the unit
+  const std::optional<ImuRest>& rest = input.recording.imu_details.rest;
+  if (!rest || input.recording.imu_details.accel_frozen.dead()) return;
+  const double off = rest->accel.norm() - kGravity;
+  if (std::abs(off) < kLeast || std::abs(off) > kMost) return;
+  out.warn(fmt::format("accelerometer: it reads {:.2f} m/s^2 at rest, for {:.1f} s from {:.3f} s on, not {:.2f}",
+                       rest->accel.norm(), to_seconds(rest->length), to_seconds(rest->begin), kGravity),
+           fmt::format("a scale {:.1f} % too {}, or a bias as large: calibrate it at rest in six attitudes",
+                       100.0 * std::abs(off) / kGravity, off > 0.0 ? "large" : "small"));
+}
+
 void check_gyro_unit(const CheckInput& input, Findings& out) {
   constexpr double kFastest = 6.0;  // mean angular speed of a flight [rad/s]: a turn a second, all the time
   const ImuStatistics& imu = input.recording.imu_details;
@@ -241,8 +256,8 @@ void check_gyro_unit(const CheckInput& input, Findings& out) {
                          compared ? "" : " (its unit is not checked against a camera)"));
 }
 
-constexpr Check kImuChecks[] = {check_imu_rate, check_gate,       check_gaps,      check_clock, check_frozen_readings,
-                                check_columns,  check_accel_unit, check_gyro_unit, check_noise};
+constexpr Check kImuChecks[] = {check_imu_rate, check_gate,       check_gaps,    check_clock,     check_frozen_readings,
+                                check_columns,  check_accel_unit, check_gravity, check_gyro_unit, check_noise};
 
 }  // namespace
 

@@ -28,6 +28,15 @@ TEST(Checks, NamesNoiseFarFromThatAtRestWithBothValues) {
   for (const Finding& f : said(1e-3, 4e-4)) EXPECT_LE(f.severity, Note) << f.text;
 }
 
+TEST(Checks, NamesAnAccelerometerThatDoesNotReadGravityAtRest) {
+  RecordingStatistics s = healthy();
+  s.imu_details.rest = ImuRest{timestamp_from_seconds(1), std::chrono::seconds(2), 1e-4, 2e-3, {}, {0.1, 0.0, 10.2}};
+  EXPECT_THAT(remedy_of(s, {}, Warning, "accelerometer: it reads 10.20 m/s^2 at rest, for 2.0 s from 1.000 s on"),
+              HasSubstr("a scale 4.0 % too large"));
+  s.imu_details.rest->accel.z() = 9.7;
+  EXPECT_EQ(remedy_of(s, {}, Warning, "accelerometer: it reads"), "NO SUCH FINDING");
+}
+
 TEST(Checks, NamesAnImuThatEndsBeforeTheCameras) {
   RecordingStatistics s = healthy();
   EXPECT_EQ(remedy_of(s, {}, Warning, "all sensors together cover"), "NO SUCH FINDING");

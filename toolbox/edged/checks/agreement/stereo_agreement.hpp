@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Compares the images of frame cameras that see the same: whether each is the camera that the calibration says.
+// Compares the images of cameras of one kind that see the same: whether each is the camera that the calibration says.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,32 +12,34 @@
 
 namespace edged {
 
-/// Matches corners of the first camera with those of each other one, by the calibration and by that with both
-/// exchanged.
+/// Matches corners of the first camera of its kind with those of each other one, by the calibration and by that with
+/// both exchanged. The image of an event camera holds the events of a short time.
 class StereoAgreement {
  public:
-  /// Other than frame cameras are ignored.
   explicit StereoAgreement(std::span<const RigCamera> cameras);
 
-  /// Uses a few images of one instant, of which that of the first camera comes first.
+  /// Uses a few images of one instant.
   void add(const Measurement& measurement);
 
   /// The pairs that match only if exchanged, each "NAME and NAME".
   std::vector<std::string> exchanged() const;
 
  private:
-  struct Other {
-    RigCamera camera;
-    Timestamp due = Timestamp::min();  ///< of the next comparison
+  struct Camera {
+    RigCamera given;
+    std::size_t first = 0;             ///< of its kind, an index of cameras_
+    Frame image = {};                  ///< the newest one
+    cv::Mat counts = {};               ///< of events, for the next one
+    Timestamp due = Timestamp::min();  ///< of the next comparison with the first
     int compared = 0;
     int as_given = 0, exchanged = 0;  ///< corners that match
   };
 
-  void compare(const Frame& frame, Other& other) const;
+  void count(Camera& camera, const EventBatch& batch);
+  void show(Camera& camera, Frame image);
+  static void compare(const Camera& one, Camera& other);
 
-  std::optional<RigCamera> first_;
-  Frame image_;  ///< the newest one of it
-  std::vector<Other> others_;
+  std::vector<Camera> cameras_;
 };
 
 }  // namespace edged
