@@ -52,6 +52,7 @@ TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized)
   const double sigma = place.position();
   place.update(0.01, kEnough_m);
   EXPECT_EQ(place.position(), sigma);
+  EXPECT_EQ(place.doubt(true), sigma) << "a map would show more";
   place.relocalize();
   EXPECT_EQ(place.position(), 0.0);
 }

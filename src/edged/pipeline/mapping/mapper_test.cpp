@@ -60,9 +60,9 @@ class MapperBeforeAWall : public testing::Test {
     mapper.add_keyframe(record);
   }
 
-  bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B) const {
+  bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B, double place_sigma = 0.0) const {
     mapper.predict(now(t_s, T_O_B));
-    return mapper.localize(second(t_s), std::vector{PosedImage{image(T_M_B), T_O_B * T_B_C_}});
+    return mapper.localize(second(t_s), std::vector{PosedImage{image(T_M_B), T_O_B * T_B_C_}}, place_sigma);
   }
 
   PlaneScene scene_{davis_like_pinhole(), 2.0};
@@ -108,6 +108,18 @@ TEST_F(MapperBeforeAWall, RelocalizesAfterALoss) {
   EXPECT_LT(T_M_B.translation().norm(), 0.01) << "dead reckoning was off by 0.022";
   EXPECT_FALSE(localize(mapper, 11.0, T_new_old * off, SE3())) << "only once";
   EXPECT_EQ(mapper.final_trajectory().keyframes.size(), 1U);
+}
+
+TEST_F(MapperBeforeAWall, TakesNoMatchWhereDeadReckoningIsUncertain) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.restart(SE3(), now(0.0, SE3()));
+  add_keyframe(mapper, 5.0, SE3());
+  mapper.add_pose(now(6.0, SE3()));
+  mapper.restart(SE3(), now(10.0, SE3()));
+  EXPECT_TRUE(mapper.relocalizing());
+  EXPECT_FALSE(localize(mapper, 10.1, SE3(), SE3(), 1.0)) << "it may be by chance";
+  EXPECT_TRUE(localize(mapper, 10.4, SE3(), SE3(), 1.0)) << "by the appearance of two images";
+  EXPECT_FALSE(mapper.relocalizing());
 }
 
 TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {
