@@ -29,10 +29,18 @@ std::string keyframes_csv(const std::vector<MappedKeyframe>& keyframes) {
 class FinalTrajectoryFiles : public RunObserver {
  public:
   explicit FinalTrajectoryFiles(const RunContext& run) : run_(run) {}
+  void on_summary(RunEnd& end) override {
+    const FinalTrajectory& known = end.final_trajectory;
+    Figures& figures = end.summary.outputs;
+    figures.json["final_cost"] = {{"before", known.initial_cost}, {"after", known.final_cost}};
+    if (known.initial_cost > 0.0)
+      figures.line("final trajectory", fmt::format("{:.4g}", known.final_cost),
+                   fmt::format("cost of all measurements, {:.4g} before the joint optimization", known.initial_cost));
+  }
   void on_end(const RunEnd& end) override {
     const OutputFrame frame = run_.estimated_frame();
     write_final_trajectory(run_.folder, frame, end.final_trajectory,
-                           run_.heading(frame, "final: corrected by all map matches, not causal"));
+                           run_.heading(frame, "final: by all measurements together, not causal"));
   }
 
  private:

@@ -186,11 +186,11 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   if (!truth_.problem.empty())
     end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be read: " + truth_.problem,
                                             "mend or remove the file: the run is compared with nothing"});
-  for (const auto& observer : observers_) observer->on_summary(end);
   {
     const auto timer = run_.timings.measure("final_trajectory");
     end.final_trajectory = odometry_.final_trajectory();
   }
+  for (const auto& observer : observers_) observer->on_summary(end);
   end.timings = odometry_.timings();
   compare(end);
   const Ending ending = broken_off                ? Ending::BrokenOff

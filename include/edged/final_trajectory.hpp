@@ -37,10 +37,12 @@ struct MappedKeyframe {
   std::vector<Point> points;
 };
 
-/// The batch solution over all measurements. It is not causal; the causal trajectory is in the steps.
+/// The joint solution of all keyframes by all measurements. It is not causal; the causal trajectory is in the steps.
 struct FinalTrajectory {
   Trajectory poses;                       ///< T_W_B at the time of each Good or Degraded step, IMU clock
   std::vector<MappedKeyframe> keyframes;  ///< keyframes that the map still holds
+  /// Half the sum of the squared residuals of all measurements, with their robust losses, before and after.
+  double initial_cost = 0.0, final_cost = 0.0;
 };
 
 }  // namespace edged

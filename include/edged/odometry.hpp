@@ -68,9 +68,8 @@ class Odometry {
   std::optional<NavState> newest_state() const;
   std::optional<NavState> state_at(Timestamp t) const;
 
-  /// The final trajectory and the map: a batch optimization over all steps and map matches so far. Call it after the
-  /// last step. Without the map, or without any match, the poses are those of the steps. Not causal. It takes seconds
-  /// for an hour of flight, and its record half a megabyte a minute.
+  /// The final trajectory and the map: a joint optimization of all keyframes by all measurements so far. Call it after
+  /// the last step. Not causal. It takes about a second, and its record two megabytes, for a minute of flight.
   FinalTrajectory final_trajectory() const;
 
   /// The cameras of the mode with their present online calibration: lens, pose relative to the body, and total time

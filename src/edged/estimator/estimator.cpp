@@ -142,6 +142,7 @@ bool Estimator::start(const EstimatorInput& input, EstimatorResult& result) {
 /// Goes on in the window of an initialization.
 void Estimator::adopt(StartWindow start, EstimatorResult& result) {
   window_ = std::move(start.window);
+  record_ = {};
   supported_at_ = newest().t;
   for (std::size_t camera = 0; camera < known_intrinsics_.size(); ++camera)
     window_.set_intrinsics(camera, known_intrinsics_[camera]);
@@ -231,6 +232,14 @@ std::optional<CalibrationCovariance> Estimator::calibration_covariance(std::size
   if (!initialized_) return std::nullopt;
   const auto P = edged::covariance(window_, {{BlockKind::Calibration, camera}});
   return P ? std::optional<CalibrationCovariance>(*P * inflation(window_, config_)) : std::nullopt;
+}
+
+StartRecord Estimator::record() const {
+  StartRecord all;
+  if (!initialized_) return all;
+  all = record_;
+  all.close(window_);
+  return all;
 }
 
 std::optional<double> Estimator::depth(FeatureId id, const std::string& camera) const {
@@ -358,7 +367,7 @@ std::vector<MarginalizedKeyframe> Estimator::slide() {
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states().size()) > config_.recent_states + config_.keyframes) {
-    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks));
+    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks, &record_));
   }
   window_.remove_ended_tracks();
   return marginalized_keyframes;

@@ -68,6 +68,8 @@ class Estimator {
   const ExternalCounters& external_counters() const { return external_.counters(); }
 
   const Window& window() const { return window_; }
+  /// All measurements since the start; empty before it.
+  StartRecord record() const;
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
@@ -87,6 +89,7 @@ class Estimator {
 
   EstimatorConfig config_;
   Window window_;
+  StartRecord record_;  ///< of what has left the window
   StandstillDetector standstill_;
   ExternalFactors external_;
   Initializer initializer_;

@@ -49,9 +49,10 @@ struct SolverTuning {
   /// Added to a matrix with ones on its diagonal, times 1e3 after a step that fails. Close to Gauss-Newton: with more
   /// damping the scale, common to many blocks, does not converge.
   double damping = 1e-9, damping_factor = 1e3;
-  double converged = 1e-6;     ///< a step with a smaller relative decrease of the cost is the last
-  double keep_matrix = 0.1;    ///< after a smaller relative decrease the next step keeps the factorization [017]
-  double rest_stretch = 10.0;  ///< factor on the longest IMU interval between keyframes, at rest [021]
+  double converged = 1e-6;       ///< a step with a smaller relative decrease of the cost is the last
+  double keep_matrix = 0.1;      ///< after a smaller relative decrease the next step keeps the factorization [017]
+  double rest_stretch = 10.0;    ///< factor on the longest IMU interval between keyframes, at rest [021]
+  std::size_t band_states = 40;  ///< poses further apart are coupled by revisits, not by tracks [028]
 };
 inline constexpr SolverTuning kSolverTuning{};
 

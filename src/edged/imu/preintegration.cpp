@@ -179,6 +179,12 @@ Preintegration Preintegration::joined(const Preintegration& next) const {
   return both;
 }
 
+Preintegration Preintegration::without_samples() const {
+  Preintegration motion = *this;
+  motion.samples_ = {};
+  return motion;
+}
+
 Quaterniond Preintegration::dR(const Vector3d& bias_gyro) const {
   return dR_ * so3::exp(d_dR_d_bg_ * (bias_gyro - bias_gyro_));
 }

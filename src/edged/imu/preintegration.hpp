@@ -48,6 +48,9 @@ class Preintegration {
   /// This interval and the one that follows it, as one (keeps the biases of this one).
   Preintegration joined(const Preintegration& next) const;
 
+  /// Without its samples, which are most of it: it cannot be integrated again nor joined then, and has no begin or end.
+  Preintegration without_samples() const;
+
   double dt() const { return dt_; }  ///< [s]
   Timestamp begin() const { return samples_.front().t; }
   Timestamp end() const { return samples_.back().t; }

@@ -48,6 +48,7 @@ struct MapTuning {
 
   // Final trajectory (decision 028).
   double final_drift_factor = 2.0;  ///< on the drift of the filter: matches on both sides bound it
+  int final_iterations = 15;        ///< steps of the joint optimization, at most
   double start_tilt_deg = 0.2;      ///< sigma of the tilt between two starts
   std::size_t joint_images =
       500;  ///< matched images that are optimized with the keyframes: time grows faster than they

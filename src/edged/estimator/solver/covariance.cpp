@@ -15,11 +15,11 @@ std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<B
     if (others.erase(block) == 0) return std::nullopt;
   }
   const Layout layout(all, others);
-  const Eigen::MatrixXd H = normal_equations(window, cost, layout).H;
+  const Eigen::MatrixXd H = normal_equations(window, cost, layout).H.dense();
   const Eigen::Index m = layout.size - layout.leaving;
-  const Eigen::VectorXd scale = unit_diagonal_scale(H);
+  const Eigen::VectorXd scale = unit_diagonal_scale(H.diagonal());
   EnvelopeCholesky cholesky;
-  if (!cholesky.factorise(scale.asDiagonal() * H * scale.asDiagonal())) return std::nullopt;
+  if (!cholesky.factorise(EnvelopeMatrix(scale.asDiagonal() * H * scale.asDiagonal()))) return std::nullopt;
   // The information of the blocks before the coupling to others.
   const Eigen::MatrixXd L = cholesky.last_of_L(m);
   const Eigen::MatrixXd root =

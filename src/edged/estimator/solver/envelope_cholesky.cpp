@@ -14,13 +14,13 @@ namespace {
 
 constexpr Index kRowsAtOnce = 4;  // at once: they share the loads of the row that they are multiplied with
 
-/// Dot products of row i with each of the rows from j on, over the columns from k up to j.
-std::array<double, kRowsAtOnce> dots_of(const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& L,
-                                        Index i, Index j, Index k) {
+using Rows = std::array<const double*, kRowsAtOnce>;
+
+Eigen::Map<const Eigen::VectorXd> part(const double* row, Index first, Index size) { return {row + first, size}; }
+
+/// Dot products of a row with others, over the columns from k up to j.
+std::array<double, kRowsAtOnce> dots_of(const double* row, const Rows& of, Index k, Index j) {
   using Two = Eigen::Array2d;
-  const double* row = &L(i, 0);
-  const double* of[kRowsAtOnce];
-  for (Index m = 0; m < kRowsAtOnce; ++m) of[m] = &L(j + m, 0);
   Two a = Two::Zero(), b = Two::Zero(), c = Two::Zero(), d = Two::Zero();
   for (; k + 2 <= j; k += 2) {
     const Two x = Eigen::Map<const Two>(row + k);
@@ -31,39 +31,51 @@ std::array<double, kRowsAtOnce> dots_of(const Eigen::Matrix<double, Eigen::Dynam
   }
   std::array<double, kRowsAtOnce> sums = {a.sum(), b.sum(), c.sum(), d.sum()};
   if (k < j) {
-    for (Index m = 0; m < kRowsAtOnce; ++m) sums[static_cast<std::size_t>(m)] += row[k] * of[m][k];
+    for (Index m = 0; m < kRowsAtOnce; ++m)
+      sums[static_cast<std::size_t>(m)] += row[k] * of[static_cast<std::size_t>(m)][k];
   }
   return sums;
 }
 
 }  // namespace
 
-bool EnvelopeCholesky::factorise(const Eigen::MatrixXd& H, double damping) {
+bool EnvelopeCholesky::factorise(const EnvelopeMatrix& H, double damping) {
   L_ = H;
-  L_.diagonal().array() += damping;
-  first_.resize(H.rows());
-  inverse_.resize(H.rows());
-  for (Index i = 0; i < L_.rows(); ++i) {
-    auto row = L_.row(i);
+  first_.resize(H.size());
+  inverse_.resize(H.size());
+  for (Index i = 0; i < L_.size(); ++i) {
+    double* row = L_.row(i);
+    row[i] += damping;
     Index& first = first_[i];
-    for (first = 0; first < i && row[first] == 0.0;) ++first;
+    for (first = L_.first(i); first < i && row[first] == 0.0;) ++first;
+    const auto one = [&](Index j) {
+      const Index k = std::max(first, first_[j]);
+      if (k < j) row[j] -= part(row, k, j - k).dot(part(L_.row(j), k, j - k));
+      row[j] *= inverse_[j];
+    };
     Index j = first;
     for (; j + kRowsAtOnce <= i; j += kRowsAtOnce) {
-      Index k = j;
-      for (Index m = 0; m < kRowsAtOnce; ++m) k = std::min(k, std::max(first, first_[j + m]));
-      const std::array<double, kRowsAtOnce> dots = dots_of(L_, i, j, k);
+      Index k = j, stored = 0;
+      Rows of;
       for (Index m = 0; m < kRowsAtOnce; ++m) {
+        k = std::min(k, std::max(first, first_[j + m]));
+        stored = std::max(stored, L_.first(j + m));
+        of[static_cast<std::size_t>(m)] = L_.row(j + m);
+      }
+      if (k < stored) {  // not all of them have so many columns
+        for (Index m = 0; m < kRowsAtOnce; ++m) one(j + m);
+        continue;
+      }
+      const std::array<double, kRowsAtOnce> dots = dots_of(row, of, k, j);
+      for (Index m = 0; m < kRowsAtOnce; ++m) {
+        const double* other = of[static_cast<std::size_t>(m)];
         double sum = dots[static_cast<std::size_t>(m)];
-        for (Index p = 0; p < m; ++p) sum += row[j + p] * L_(j + m, j + p);
+        for (Index p = 0; p < m; ++p) sum += row[j + p] * other[j + p];
         row[j + m] = (row[j + m] - sum) * inverse_[j + m];
       }
     }
-    for (; j < i; ++j) {
-      const Index k = std::max(first, first_[j]);
-      if (k < j) row[j] -= row.segment(k, j - k).dot(L_.row(j).segment(k, j - k));
-      row[j] *= inverse_[j];
-    }
-    const double pivot = row[i] - row.segment(first, i - first).squaredNorm();
+    for (; j < i; ++j) one(j);
+    const double pivot = row[i] - part(row, first, i - first).squaredNorm();
     if (!(pivot > 0.0)) return false;
     row[i] = std::sqrt(pivot);
     inverse_[i] = 1.0 / row[i];
@@ -75,14 +87,23 @@ Eigen::VectorXd EnvelopeCholesky::solve(const Eigen::VectorXd& b) const {
   Eigen::VectorXd x = b;
   for (Index i = 0; i < x.size(); ++i) {
     const Index first = first_[i], n = i - first;
-    x[i] = (x[i] - L_.row(i).segment(first, n).dot(x.segment(first, n))) * inverse_[i];
+    x[i] = (x[i] - part(L_.row(i), first, n).dot(x.segment(first, n))) * inverse_[i];
   }
   for (Index i = x.size() - 1; i >= 0; --i) {
     const Index first = first_[i], n = i - first;
     x[i] *= inverse_[i];
-    x.segment(first, n) -= x[i] * L_.row(i).segment(first, n).transpose();
+    x.segment(first, n) -= x[i] * part(L_.row(i), first, n);
   }
   return x;
+}
+
+Eigen::MatrixXd EnvelopeCholesky::last_of_L(Index size) const {
+  Eigen::MatrixXd last = Eigen::MatrixXd::Zero(size, size);
+  const Index begin = L_.size() - size;
+  for (Index i = 0; i < size; ++i)
+    for (Index j = std::max<Index>(L_.first(begin + i) - begin, 0); j <= i; ++j)
+      last(i, j) = L_.row(begin + i)[begin + j];
+  return last;
 }
 
 }  // namespace edged

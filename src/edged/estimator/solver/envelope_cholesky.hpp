@@ -5,20 +5,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "edged/estimator/solver/envelope_matrix.hpp"
 
 namespace edged {
 
 class EnvelopeCholesky {
  public:
-  /// Factorizes H + damping I; only the lower triangle of H is read. False if that is not positive definite.
-  bool factorise(const Eigen::MatrixXd& H, double damping = 0.0);
+  /// Factorizes H + damping I. False if that is not positive definite.
+  bool factorise(const EnvelopeMatrix& H, double damping = 0.0);
   /// H^-1 b
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   /// The last rows and columns of L: the factor of the Schur complement of all before them.
-  Eigen::MatrixXd last_of_L(Eigen::Index size) const { return L_.bottomRightCorner(size, size); }
+  Eigen::MatrixXd last_of_L(Eigen::Index size) const;
 
  private:
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> L_;
+  EnvelopeMatrix L_;
   Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> first_;  ///< column of a row that is not zero
   Eigen::VectorXd inverse_;                               ///< inverse of the diagonal
 };

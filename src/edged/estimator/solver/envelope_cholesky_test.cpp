@@ -29,14 +29,14 @@ TEST(EnvelopeCholesky, SolvesAsTheDenseFactorisationDoes) {
   const Eigen::MatrixXd H = chain_and_border(30, 7);
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(37, -1.0, 1.0);
   EnvelopeCholesky cholesky;
-  ASSERT_TRUE(cholesky.factorise(H));
+  ASSERT_TRUE(cholesky.factorise(EnvelopeMatrix(H)));
   EXPECT_LT((cholesky.solve(b) - H.selfadjointView<Eigen::Lower>().llt().solve(b)).norm(), 1e-14);
 }
 
 TEST(EnvelopeCholesky, EndsWithTheFactorOfTheSchurComplement) {
   const Eigen::MatrixXd H = chain_and_border(30, 7);
   EnvelopeCholesky cholesky;
-  ASSERT_TRUE(cholesky.factorise(H));
+  ASSERT_TRUE(cholesky.factorise(EnvelopeMatrix(H)));
   const Eigen::MatrixXd L = cholesky.last_of_L(7).triangularView<Eigen::Lower>(),
                         whole = H.selfadjointView<Eigen::Lower>();
   EXPECT_LT(((L * L.transpose()).inverse() - whole.inverse().bottomRightCorner(7, 7)).norm(), 1e-14);
@@ -45,7 +45,7 @@ TEST(EnvelopeCholesky, EndsWithTheFactorOfTheSchurComplement) {
 TEST(EnvelopeCholesky, RefusesWhatIsNotPositiveDefinite) {
   Eigen::MatrixXd H = chain_and_border(5, 2);
   H(3, 3) = 0.0;
-  EXPECT_FALSE(EnvelopeCholesky().factorise(H));
+  EXPECT_FALSE(EnvelopeCholesky().factorise(EnvelopeMatrix(H)));
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ using Eigen::Vector2d;
 template <int Size>
 using Transposed = Eigen::Matrix<double, Size, 2>;
 
-/// J_a^T J_b; lazy, as it is too small for the kernel that Eigen takes otherwise.
+/// J_a^T J_b, row by row as it is added; lazy, as it is too small for the kernel that Eigen takes otherwise.
 template <int Rows, int Columns>
-Eigen::Matrix<double, Rows, Columns> product(const Transposed<Rows>& a, const Transposed<Columns>& b) {
+Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor> product(const Transposed<Rows>& a, const Transposed<Columns>& b) {
   return a.lazyProduct(b.transpose());
 }
 
@@ -54,9 +54,15 @@ WeightedResidual weighted(const LandmarkResidual& at, const ObservationError& er
   return out;
 }
 
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Columns, Eigen::RowMajor> outer(const Eigen::Matrix<double, Rows, 1>& a,
+                                                            const Eigen::Matrix<double, Columns, 1>& b) {
+  return a.lazyProduct(b.transpose());
+}
+
 /// J^T J, of its lower triangle the blocks of six, and the rows that are left over.
 template <int Size>
-void add_lower(const Transposed<Size>& J, Eigen::Matrix<double, Size, Size>& H) {
+void add_lower(const Transposed<Size>& J, Eigen::Matrix<double, Size, Size, Eigen::RowMajor>& H) {
   constexpr int kWhole = Size / 6 * 6, kRest = Size - kWhole;
   for (int i = 0; i < kWhole; i += 6) {
     const Transposed<6> row = J.template middleRows<6>(i);
@@ -175,10 +181,9 @@ void LandmarkEquations::accumulate(std::size_t residual, const ObservationError&
 /// Adds the part of the anchor and of the calibration of its camera, common to all residuals.
 void LandmarkEquations::add_own() {
   const Index anchor = depth_.poses.front().global, calibration = depth_.calibrations.front().global;
-  equations_.add<6, 6>(anchor, anchor, H_.topLeftCorner<6, 6>());
-  equations_.add<kCalibrationSize, 6>(calibration, anchor, H_.bottomLeftCorner<kCalibrationSize, 6>());
-  equations_.add<kCalibrationSize, kCalibrationSize>(calibration, calibration,
-                                                     H_.bottomRightCorner<kCalibrationSize, kCalibrationSize>());
+  equations_.add(anchor, anchor, H_.topLeftCorner<6, 6>());
+  equations_.add(calibration, anchor, H_.bottomLeftCorner<kCalibrationSize, 6>());
+  equations_.add(calibration, calibration, H_.bottomRightCorner<kCalibrationSize, kCalibrationSize>());
   equations_.g.segment<6>(anchor) += g_.head<6>();
   equations_.g.segment<kCalibrationSize>(calibration) += g_.tail<kCalibrationSize>();
   depth_.poses.front().coupling = coupling_.head<6>();
@@ -186,11 +191,11 @@ void LandmarkEquations::add_own() {
 }
 
 void LandmarkEquations::add_depth(Index place) {
-  for (const DepthByPose& pose : depth_.poses) equations_.add<1, 6>(place, pose.global, pose.coupling.transpose());
+  for (const DepthByPose& pose : depth_.poses) equations_.add(place, pose.global, pose.coupling.transpose());
   for (const DepthByCalibration& camera : depth_.calibrations) {
-    equations_.add<1, kCalibrationSize>(place, camera.global, camera.coupling.transpose());
+    equations_.add(place, camera.global, camera.coupling.transpose());
   }
-  equations_.H(place, place) += depth_.h;
+  equations_.H.row(place)[place] += depth_.h;
   equations_.g[place] += depth_.g;
 }
 
@@ -201,7 +206,7 @@ void LandmarkEquations::eliminate_depth() {
     const Vector6d row_share = row.coupling / -depth_.h;
     for (std::size_t j = 0; j <= i; ++j) {
       const DepthByPose& column = depth_.poses[j];
-      equations_.add<6, 6>(row.global, column.global, row_share * column.coupling.transpose());
+      equations_.add(row.global, column.global, outer(row_share, column.coupling));
     }
     equations_.g.segment<6>(row.global) += row_share * depth_.g;
   }
@@ -209,12 +214,11 @@ void LandmarkEquations::eliminate_depth() {
     const DepthByCalibration& row = depth_.calibrations[i];
     const CalibrationVector share = row.coupling / -depth_.h;
     for (const DepthByPose& pose : depth_.poses) {
-      equations_.add<kCalibrationSize, 6>(row.global, pose.global, share * pose.coupling.transpose());
+      equations_.add(row.global, pose.global, outer(share, pose.coupling));
     }
     for (std::size_t j = 0; j <= i; ++j) {
       const DepthByCalibration& column = depth_.calibrations[j];
-      equations_.add<kCalibrationSize, kCalibrationSize>(row.global, column.global,
-                                                         share * column.coupling.transpose());
+      equations_.add(row.global, column.global, outer(share, column.coupling));
     }
     equations_.g.segment<kCalibrationSize>(row.global) += share * depth_.g;
   }

@@ -38,7 +38,7 @@ class LandmarkEquations {
 
   // Of the present landmark. Columns: the anchor's pose, the calibration of its camera.
   static constexpr int kOwn = 6 + kCalibrationSize;
-  Eigen::Matrix<double, kOwn, kOwn> H_;
+  Eigen::Matrix<double, kOwn, kOwn, Eigen::RowMajor> H_;
   Eigen::Matrix<double, kOwn, 1> g_, coupling_;
   DepthEquation depth_;
   std::vector<std::size_t> pose_of_, calibration_of_;  ///< by residual: its index in depth_

@@ -18,6 +18,16 @@ Layout::Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& going
   for (const BlockKey& key : blocks) {
     if (!going.contains(key)) place(key), staying.push_back(key);
   }
+  envelope = {{size, 0}};
+}
+
+Layout::Layout(std::span<const BlockKey> order) {
+  for (const BlockKey& key : order) {
+    offset.emplace(key, size);
+    size += tangent_size(key.kind);
+  }
+  leaving = size;
+  envelope = {{size, 0}};
 }
 
 void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& term_H,
@@ -27,12 +37,7 @@ void NormalEquations::add(const Eigen::Ref<const Eigen::MatrixXd>& term_H,
     const Placed& row = blocks[i];
     for (std::size_t j = 0; j <= i; ++j) {
       const Placed& column = blocks[j];
-      const auto part = term_H.block(row.local, column.local, row.size, column.size);
-      if (row.global >= column.global) {
-        H.block(row.global, column.global, row.size, column.size) += part;
-      } else {
-        H.block(column.global, row.global, column.size, row.size) += part.transpose();
-      }
+      add(row.global, column.global, term_H.block(row.local, column.local, row.size, column.size));
     }
   }
 }
@@ -41,8 +46,8 @@ void NormalEquations::add_gradient(const Eigen::Ref<const Eigen::VectorXd>& term
   for (const Placed& block : blocks) g.segment(block.global, block.size) += term_g.segment(block.local, block.size);
 }
 
-Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H) {
-  return (H.diagonal().array() > kNoInformation).select(H.diagonal().array().rsqrt(), 0.0);
+Eigen::VectorXd unit_diagonal_scale(const Eigen::VectorXd& diagonal_of_H) {
+  return (diagonal_of_H.array() > kNoInformation).select(diagonal_of_H.array().rsqrt(), 0.0);
 }
 
 }  // namespace edged

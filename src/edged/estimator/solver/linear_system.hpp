@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edged/estimator/factors/blocks.hpp"
+#include "edged/estimator/solver/envelope_matrix.hpp"
 
 namespace edged {
 
@@ -17,7 +18,11 @@ namespace edged {
 /// neighbours only (EnvelopeCholesky); each part in the order of the keys.
 struct Layout {
   explicit Layout(const std::set<BlockKey>& blocks, const std::set<BlockKey>& leaving = {});
+  /// In the given order.
+  explicit Layout(std::span<const BlockKey> order);
 
+  /// The zeros in front of each block's rows, where not all blocks are coupled to the first ones.
+  std::vector<EnvelopeMatrix::Rows> envelope;
   std::map<BlockKey, Eigen::Index> offset;
   std::vector<BlockKey> staying;
   Eigen::Index leaving = 0;  ///< columns of the marginalized blocks
@@ -31,24 +36,34 @@ struct Placed {
 
 /// H d = -g over the tangent steps d. Only the lower triangle of H is used.
 struct NormalEquations {
-  explicit NormalEquations(Eigen::Index size) : H(Eigen::MatrixXd::Zero(size, size)), g(Eigen::VectorXd::Zero(size)) {}
+  explicit NormalEquations(const Layout& layout) : H(layout.envelope), g(Eigen::VectorXd::Zero(layout.size)) {}
+  /// For the gradient alone.
+  explicit NormalEquations(Eigen::Index size) : g(Eigen::VectorXd::Zero(size)) {}
 
   /// The equations of one term; `blocks` in the order of their local columns.
   void add(const Eigen::Ref<const Eigen::MatrixXd>& term_H, const Eigen::Ref<const Eigen::VectorXd>& term_g,
            std::span<const Placed> blocks);
   void add_gradient(const Eigen::Ref<const Eigen::VectorXd>& term_g, std::span<const Placed> blocks);
   /// The coupling of the block at `row` to that at `column`.
-  template <int Rows, int Columns>
-  void add(Eigen::Index row, Eigen::Index column, const Eigen::Matrix<double, Rows, Columns>& part) {
+  template <typename Part>
+  void add(Eigen::Index row, Eigen::Index column, const Eigen::MatrixBase<Part>& part) {
     if (row >= column) {
-      H.block<Rows, Columns>(row, column) += part;
+      add_lower(row, column, part.derived());
     } else {
-      H.block<Columns, Rows>(column, row) += part.transpose();
+      add_lower(column, row, part.transpose());
     }
   }
 
-  Eigen::MatrixXd H;
+  EnvelopeMatrix H;
   Eigen::VectorXd g;
+
+ private:
+  template <typename Part>
+  void add_lower(Eigen::Index row, Eigen::Index column, const Part& part) {
+    using Entries = Eigen::Matrix<double, 1, Part::ColsAtCompileTime>;
+    for (Eigen::Index i = 0; i < part.rows(); ++i)
+      Eigen::Map<Entries>(H.row(row + i) + column, part.cols()) += part.row(i);
+  }
 };
 
 /// The coupling of a landmark's inverse depth and the pose of one of its views.
@@ -73,7 +88,7 @@ struct DepthEquation {
 
 /// S with ones on the diagonal of S H S, zero where H is zero: positions, angles and biases differ in
 /// information by ten orders of magnitude.
-Eigen::VectorXd unit_diagonal_scale(const Eigen::MatrixXd& H);
+Eigen::VectorXd unit_diagonal_scale(const Eigen::VectorXd& diagonal_of_H);
 
 /// A diagonal entry of H below this has no information.
 inline constexpr double kNoInformation = 1e-9;

@@ -15,19 +15,19 @@ using Eigen::VectorXd;
 constexpr double kRankTolerance = 1e-10;  // of a matrix with unit diagonal
 
 /// Schur complement of the marginalized blocks, without directions that have no information.
-void eliminate(Eigen::Index leaving, NormalEquations& eq) {
-  const Eigen::Index m = leaving, n = eq.g.size() - m;
+void eliminate(Eigen::Index leaving, MatrixXd& H, VectorXd& g) {
+  const Eigen::Index m = leaving, n = g.size() - m;
   if (m == 0) return;
-  const MatrixXd H_mm = eq.H.topLeftCorner(m, m).selfadjointView<Eigen::Lower>();
-  const VectorXd scale = unit_diagonal_scale(H_mm);
+  const MatrixXd H_mm = H.topLeftCorner(m, m).selfadjointView<Eigen::Lower>();
+  const VectorXd scale = unit_diagonal_scale(H_mm.diagonal());
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scale.asDiagonal() * H_mm * scale.asDiagonal());
   const VectorXd inverse =
       (eigen.eigenvalues().array() > kRankTolerance).select(eigen.eigenvalues().array().inverse(), 0.0);
   const MatrixXd V = scale.asDiagonal() * eigen.eigenvectors();
   const MatrixXd H_mm_inv = V * inverse.asDiagonal() * V.transpose();
-  const MatrixXd H_nm = eq.H.bottomLeftCorner(n, m);
-  eq.H.bottomRightCorner(n, n).noalias() -= H_nm * H_mm_inv * H_nm.transpose();
-  eq.g.tail(n).noalias() -= H_nm * (H_mm_inv * eq.g.head(m));
+  const MatrixXd H_nm = H.bottomLeftCorner(n, m);
+  H.bottomRightCorner(n, n).noalias() -= H_nm * H_mm_inv * H_nm.transpose();
+  g.tail(n).noalias() -= H_nm * (H_mm_inv * g.head(m));
 }
 
 struct Root {
@@ -64,16 +64,17 @@ LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<B
   std::set<BlockKey> all_leaving = leaving;
   for (const LandmarkTerm& term : cost.landmarks) all_leaving.insert({BlockKind::InverseDepth, term.id});
   const Layout layout(blocks_of(cost), all_leaving);
-  NormalEquations eq = normal_equations(window, cost, layout);
-  eliminate(layout.leaving, eq);
+  NormalEquations equations = normal_equations(window, cost, layout);
+  MatrixXd all = equations.H.dense();
+  eliminate(layout.leaving, all, equations.g);
 
   LinearPrior prior;
   const Eigen::Index n = layout.size - layout.leaving;
   if (n == 0) return prior;
-  const MatrixXd H = eq.H.bottomRightCorner(n, n).selfadjointView<Eigen::Lower>();
-  const VectorXd scale = unit_diagonal_scale(H);
+  const MatrixXd H = all.bottomRightCorner(n, n).selfadjointView<Eigen::Lower>();
+  const VectorXd scale = unit_diagonal_scale(H.diagonal());
   const VectorXd inverse_scale = (scale.array() > 0.0).select(scale.array().inverse(), 0.0);
-  const Root root = root_of(scale.asDiagonal() * H * scale.asDiagonal(), scale.asDiagonal() * eq.g.tail(n));
+  const Root root = root_of(scale.asDiagonal() * H * scale.asDiagonal(), scale.asDiagonal() * equations.g.tail(n));
   prior.J = root.R * inverse_scale.asDiagonal();
   prior.r = root.r;
   prior.information = prior.J.transpose() * prior.J;

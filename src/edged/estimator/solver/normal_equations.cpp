@@ -105,7 +105,7 @@ double value_of(const Window& window, const Factor& factor) {
 
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout,
                                  std::vector<DepthEquation>* eliminated) {
-  NormalEquations equations(layout.size);
+  NormalEquations equations(layout);
   LinearFactor linear;
   MatrixXd H;
   if (cost.prior) add_prior(window, cost.prior->prior(), layout, equations);
@@ -122,8 +122,7 @@ NormalEquations normal_equations(const Window& window, const Cost& cost, const L
 
 Eigen::VectorXd gradient(const Window& window, const Cost& cost, const Layout& layout,
                          std::vector<DepthEquation>& eliminated) {
-  NormalEquations equations(0);  // H is not used
-  equations.g.setZero(layout.size);
+  NormalEquations equations(layout.size);
   LinearFactor linear;
   if (cost.prior) {
     const PriorGradient prior = gradient_of(window, cost.prior->prior(), layout);

@@ -131,7 +131,7 @@ void drop_or_promote(Window& window, StateId id, double max_interval_s) {
   }
 }
 
-MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config) {
+MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config, StartRecord* all) {
   const StateId id = window.oldest_id();
   MarginalizedKeyframe record = record_of(window, id);
   std::set<BlockKey> leaving = {{BlockKind::Pose, id}, {BlockKind::Motion, id}};
@@ -141,15 +141,17 @@ MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& 
     keep_marginalized_points(window, feature_id, window.features().at(feature_id), anchor);
   }
   Cost cost = cost_leaving(window, leaving, inherited);
-  const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
-  for (const BlockKey& parameter : window.parameters()) {
-    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.propagate_parameter(parameter.kind, dt_s)));
-  }
   std::map<FeatureId, NewAnchor> anchors;
   for (const auto& [feature_id, anchor] : inherited) {
     if (!anchor) continue;
     const auto there = inverse_depth_in(window, *anchor, window.position(window.features().at(feature_id)), config);
     if (there) anchors.emplace(feature_id, NewAnchor{*anchor, *there});
+  }
+  if (all != nullptr) all->add_oldest(window, cost.factors, anchors);
+  const double dt_s = to_seconds(std::next(window.states().begin())->second.t - record.t);
+  for (const BlockKey& parameter : window.parameters()) {
+    cost.factors.push_back(std::make_shared<LinearPriorFactor>(window.propagate_parameter(parameter.kind, dt_s)));
+    if (all != nullptr) all->factors.push_back(cost.factors.back());
   }
   window.drop_oldest(marginalize(window, cost, leaving), anchors);
   return record;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "edged/estimator/window/landmarks.hpp"
+#include "edged/estimator/window/start_record.hpp"
 #include "edged/estimator/window/window.hpp"
 #include "edged/keyframe_record.hpp"
 
@@ -22,8 +23,9 @@ struct MarginalizedKeyframe {
 };
 
 /// Marginalizes the oldest state and returns its record. Landmarks anchored there that are still observed move to the
-/// youngest keyframe with the observations from there on, so that no measurement is used twice.
-MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config);
+/// youngest keyframe with the observations from there on, so that no measurement is used twice. What leaves is added to
+/// `all`, if there is one.
+MarginalizedKeyframe drop_oldest_keyframe(Window& window, const LandmarkConfig& config, StartRecord* all = nullptr);
 
 /// The records of all keyframes of a window, oldest first.
 std::vector<MarginalizedKeyframe> keyframe_records(const Window& window);

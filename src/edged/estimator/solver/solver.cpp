@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "edged/estimator/solver/banded_layout.hpp"
 #include "edged/estimator/solver/envelope_cholesky.hpp"
 #include "edged/estimator/solver/normal_equations.hpp"
 #include "edged/estimator/tuning.hpp"
@@ -21,8 +23,8 @@ enum class Current { All, Gradient, Nothing };
 /// The linear system of the window near its present values, with steps and their undo.
 class Neighbourhood {
  public:
-  Neighbourhood(Window& window, const Cost& cost)
-      : window_(window), cost_(cost), layout_(blocks_of(cost), blocks_of(cost)) {}
+  Neighbourhood(Window& window, const Cost& cost, Layout layout)
+      : window_(window), cost_(cost), layout_(std::move(layout)) {}
 
   /// Moves the window by a step if that decreases the cost, and returns the cost after the step: infinite if there is
   /// none.
@@ -46,9 +48,9 @@ class Neighbourhood {
   void linearise() {
     eliminated_.clear();
     NormalEquations equations = normal_equations(window_, cost_, layout_, &eliminated_);
-    scale_ = unit_diagonal_scale(equations.H);
+    scale_ = unit_diagonal_scale(equations.H.diagonal());
     H_ = std::move(equations.H);
-    H_.array() *= (scale_ * scale_.transpose()).array();
+    H_.scale(scale_);
     g_ = scale_.asDiagonal() * equations.g;
   }
 
@@ -72,19 +74,16 @@ class Neighbourhood {
   Layout layout_;
   std::vector<DepthEquation> eliminated_;
   VectorXd scale_, g_;
-  Eigen::MatrixXd H_;
+  EnvelopeMatrix H_;
   EnvelopeCholesky cholesky_;
 };
 
-}  // namespace
-
-SolveSummary solve(Window& window, int max_iterations) {
-  const Cost cost = cost_of(window);
+SolveSummary solve(Window& window, const Cost& cost, Layout layout, int max_iterations) {
   SolveSummary summary;
   summary.initial_cost = summary.final_cost = value_of(window, cost);
   summary.usable = std::isfinite(summary.initial_cost);
   if (!summary.usable) return summary;
-  Neighbourhood around(window, cost);
+  Neighbourhood around(window, cost, std::move(layout));
   double damping = kSolverTuning.damping;
   Current current = Current::Nothing;
   while (summary.iterations < max_iterations) {
@@ -112,6 +111,19 @@ SolveSummary solve(Window& window, int max_iterations) {
     }
   }
   return summary;
+}
+
+}  // namespace
+
+SolveSummary solve(Window& window, int max_iterations) {
+  const Cost cost = cost_of(window);
+  const std::set<BlockKey> blocks = blocks_of(cost);
+  return solve(window, cost, Layout(blocks, blocks), max_iterations);
+}
+
+SolveSummary solve_long(Window& window, int max_iterations) {
+  const Cost cost = cost_of(window);
+  return solve(window, cost, banded_layout(window, cost), max_iterations);
 }
 
 }  // namespace edged

@@ -3,6 +3,7 @@
 #include "edged/estimator/window/landmarks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <tuple>
 
@@ -222,6 +223,25 @@ std::vector<FeatureId> remove_outliers(Window& window, const LandmarkConfig& con
   for (const auto& [id, view] : taken_out) window.remove_observation(id, view);
   for (const FeatureId id : gone) window.remove_feature(id);
   return wrong;
+}
+
+void remove_hidden(Window& window) {
+  const Fit fit(window);
+  std::vector<std::pair<FeatureId, ObservationKey>> hidden;
+  std::vector<FeatureId> gone;
+  for (const auto& [id, feature] : window.features()) {
+    if (!feature.anchor) continue;
+    const LandmarkFit landmark(fit, feature);
+    std::size_t left = feature.observations.size();
+    for (const auto& [view, observation] : feature.observations) {
+      if (view == *feature.anchor || std::isfinite(landmark.sigmas(view, observation))) continue;
+      hidden.emplace_back(id, view);
+      --left;
+    }
+    if (left < 2) gone.push_back(id);
+  }
+  for (const auto& [id, view] : hidden) window.remove_observation(id, view);
+  for (const FeatureId id : gone) window.remove_feature(id);
 }
 
 void predict_observations(Window& window) {

@@ -39,6 +39,10 @@ std::optional<double> median_residual(const Window& window, std::size_t camera, 
 std::optional<double> inverse_depth_in(const Window& window, const ObservationKey& view, const Eigen::Vector3d& p_O,
                                        const LandmarkConfig& config);
 
+/// Removes observations of landmarks that are not in front of the camera, where the cost is not defined, and landmarks
+/// without another observation.
+void remove_hidden(Window& window);
+
 /// Calls Window::predict for each observation of a landmark where that is due.
 void predict_observations(Window& window);
 

@@ -23,8 +23,9 @@ struct RandomWalk {
 /// block with it, and a new block begins at its value.
 class RandomWalkParameter {
  public:
-  RandomWalkParameter(BlockKind kind, double value, double walk_per_root_s)
-      : kind_(kind), walk_per_root_s_(walk_per_root_s), blocks_{{0, value}} {}
+  /// first: number of its first block.
+  RandomWalkParameter(BlockKind kind, std::uint64_t first, double value, double walk_per_root_s)
+      : kind_(kind), walk_per_root_s_(walk_per_root_s), blocks_{{first, value}} {}
 
   BlockKey present() const { return {kind_, blocks_.rbegin()->first}; }
   /// The present block, and the one before until it is marginalized.

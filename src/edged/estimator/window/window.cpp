@@ -268,7 +268,7 @@ void Window::remove_orphaned_factors() {
 }
 
 void Window::add_parameter(BlockKind kind, double value, const RandomWalk& walk) {
-  const auto [added, is_new] = parameters_.try_emplace(kind, kind, value, walk.per_root_s);
+  const auto [added, is_new] = parameters_.try_emplace(kind, kind, next_parameter_, value, walk.per_root_s);
   EDGED_CHECK(is_new, "a second parameter of kind {}", static_cast<int>(kind));
   add_soft_prior(prior_at(added->second.present(), {&value, 1}, Eigen::VectorXd::Constant(1, walk.sigma)));
 }
@@ -285,6 +285,7 @@ std::vector<BlockKey> Window::parameters() const {
 }
 
 void Window::remove_parameter(BlockKind kind, LinearPrior prior) {
+  next_parameter_ = std::max(next_parameter_, parameters_.at(kind).present().id + 1);
   parameters_.erase(kind);
   set_prior(std::move(prior));
   remove_orphaned_factors();

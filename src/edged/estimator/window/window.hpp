@@ -92,6 +92,8 @@ struct WindowCamera {
   RigCamera calibrated() const;
 };
 
+struct StartRecord;
+
 /// Read access for all; only its own functions change it, and each keeps its invariants: times and ids of states grow;
 /// features are observed in states of the window and anchored in its keyframes; factors are of blocks in the window. A
 /// violation is a bug (EDGED_CHECK). O is the frame of this start: measurements in the map frame must be transformed to
@@ -101,6 +103,14 @@ class Window {
   /// Time offsets of the rig are residual ones: packets are already stamped on the IMU clock. Calibrations are fixed
   /// until free_calibration(). Without track noise the errors along a track are independent.
   explicit Window(const Rig& rig, const TrackNoise& noise = {0.0, 0.0}, const DepthFactorConfig& depth = {});
+  /// All states of a start that is closed, as they left the window, without a prior of marginalization. For solving
+  /// only: no state can be added, dropped or marginalized.
+  explicit Window(const StartRecord& record);
+  // Factors refer to the states.
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+  Window(Window&&) = default;
+  Window& operator=(Window&&) = default;
 
   const std::map<StateId, WindowState>& states() const { return states_; }
   StateId oldest_id() const { return states_.begin()->first; }
@@ -194,6 +204,7 @@ class Window {
   void restore(const std::vector<double>& estimates);
 
  private:
+  void observe_again(const StartRecord& record, std::size_t part);
   WindowState& state(StateId id);
   Feature& feature(FeatureId id);
   void observe(const CameraObservations& view);
@@ -218,6 +229,7 @@ class Window {
   DepthFactorConfig depth_config_;
   double imu_noise_scale_ = 1.0;
   StateId next_state_ = 0;
+  std::uint64_t next_parameter_ = 0;  ///< number of a new parameter's first block: none is used twice
 };
 
 }  // namespace edged

@@ -119,12 +119,9 @@ class TrajectorySmoother::Fit {
   void add_observations(const Session& session, const Nodes& nodes) {
     for (std::size_t i = 0; i < session.views.size(); i += of_) {
       const View& view = session.views[i];
-      std::vector<MapObservation> observations;
-      for (const MapObservationOf<float>& kept : view.observations) {
-        MapObservation& observation = observations.emplace_back(kept.cast<double>());
-        observation.keyframe = static_cast<std::uint32_t>(keyframes_[kept.keyframe]);
-        observation.sigma *= view.sigma;
-      }
+      std::vector<MapObservation> observations = TrajectorySmoother::observations(view);
+      for (MapObservation& observation : observations)
+        observation.keyframe = static_cast<std::uint32_t>(keyframes_[observation.keyframe]);
       graph_.add_observations(nodes.at(view.T_O_B.t).number, view.T_B_C, observations);
     }
   }
@@ -187,8 +184,41 @@ void TrajectorySmoother::add_observations(const StampedPose& T_O_B, std::vector<
   sessions_.back().views.push_back(std::move(view));
 }
 
-TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map,
-                                                  const std::optional<Closed>& closed) const {
+std::vector<MapObservation> TrajectorySmoother::observations(const View& view) {
+  std::vector<MapObservation> observations;
+  for (const MapObservationOf<float>& kept : view.observations)
+    observations.emplace_back(kept.cast<double>()).sigma *= view.sigma;
+  return observations;
+}
+
+std::vector<TrajectorySmoother::Matches> TrajectorySmoother::matches(Timestamp first, Timestamp last) const {
+  std::vector<Matches> found;
+  for (const Session& session : sessions_) {
+    for (const View& view : session.views) {
+      const auto& [t, T_O_B] = view.T_O_B;
+      if (t >= first && t <= last)
+        found.push_back({{t, between(session.refined, t) * T_O_B}, view.T_B_C, observations(view)});
+    }
+  }
+  return found;
+}
+
+std::map<Timestamp, std::size_t> TrajectorySmoother::keyframe_numbers() const {
+  std::map<Timestamp, std::size_t> numbers;
+  for (const Session& session : sessions_)
+    for (std::size_t k = 0; k < session.keyframes.size(); ++k)
+      numbers.insert_or_assign(session.keyframes[k].t, session.first_keyframe + k);
+  return numbers;
+}
+
+SE3 TrajectorySmoother::Solution::at(const TrajectorySmoother& record, Timestamp t) const {
+  std::size_t start = 0;
+  while (start + 1 < record.sessions_.size() && record.sessions_[start + 1].start.t <= t) ++start;
+  return between(T_M_O[start], t);
+}
+
+TrajectorySmoother::Solution TrajectorySmoother::solve(const OdomToMap& odom_to_map,
+                                                       const std::optional<Closed>& closed) const {
   std::size_t views = 0;
   for (const Session& session : sessions_) views += session.views.size();
   const std::size_t of = views / kMapTuning.joint_images + 1;
@@ -196,17 +226,31 @@ TrajectorySmoother::Path TrajectorySmoother::path(const OdomToMap& odom_to_map,
   const std::optional<Fit> chain =
       of > 1 ? std::optional<Fit>(std::in_place, *this, odom_to_map, closed, 1, &together) : std::nullopt;
   const Fit& fit = chain ? *chain : together;
+  Solution solution;
+  for (std::size_t i = 0; i < sessions_.size(); ++i) solution.T_M_O.push_back(fit.T_M_O(i));
+  for (std::size_t k = 0; k < keyframes_; ++k) solution.keyframes.push_back(fit.keyframe(k));
+  return solution;
+}
+
+Trajectory TrajectorySmoother::path(const OdomToMap& odom_to_map, const Solution& solution,
+                                    const Trajectory& placed) const {
   const bool as_given = !relocalized();
-  Path path;
+  Trajectory path;
+  auto next = placed.begin();
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const Session& session = sessions_[i];
-    const Trajectory T_M_O = fit.T_M_O(i);
+    Trajectory moved;  // T_M_O, with the correction of the causal pose
     for (const auto& [t, T_O_B] : session.causal) {
-      path.poses.push_back(
-          {t, as_given ? odom_to_map.T_M_O(i, t) * T_O_B : between(T_M_O, t) * between(session.refined, t) * T_O_B});
+      while (next != placed.end() && next->t < t) ++next;
+      if (next != placed.end() && next->t == t) moved.push_back({t, next->T * T_O_B.inverse()});
+    }
+    for (const auto& [t, T_O_B] : session.causal) {
+      const SE3 T_M_B = !moved.empty() ? between(moved, t) * T_O_B
+                        : as_given     ? odom_to_map.T_M_O(i, t) * T_O_B
+                                       : between(solution.T_M_O[i], t) * between(session.refined, t) * T_O_B;
+      path.push_back({t, T_M_B});
     }
   }
-  for (std::size_t k = 0; k < keyframes_; ++k) path.keyframes.push_back(fit.keyframe(k));
   return path;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Records causal poses and map matches, and optimizes the final trajectory over all of them.
-// Nothing of it feeds back into odometry or map.
+// Records causal poses and map matches, solves a graph of them for the initial values of the final optimization, and
+// composes the final trajectory. Nothing of it feeds back into odometry or map.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@
 namespace edged {
 
 /// Calls come in order of time, `load` or `restart` first. The T_M_O of each start is in OdomToMap, which gets the same
-/// starts. Half a megabyte a minute; path() takes six times that while it works.
+/// starts. Half a megabyte a minute; solve() takes six times that while it works.
 class TrajectorySmoother {
  public:
   explicit TrajectorySmoother(const MapFilterConfig& config) : config_(config) {}
@@ -40,17 +40,34 @@ class TrajectorySmoother {
   /// Map matches in the images of an instant, after the correction of OdomToMap by them; T_B_C: one per image.
   void add_observations(const StampedPose& T_O_B, std::vector<SE3> T_B_C, std::span<const MapObservation> observations);
 
-  struct Path {
-    Trajectory poses;            ///< T_M_B of all that were added
-    std::vector<SE3> keyframes;  ///< T_M_K by number
+  /// T_M_O of each start at its instants with information, interpolated between; keyframes by number.
+  struct Solution {
+    std::vector<Trajectory> T_M_O;
+    std::vector<SE3> keyframes;  ///< T_M_K
+    /// Of the start at that time.
+    SE3 at(const TrajectorySmoother& record, Timestamp t) const;
   };
   /// Initial values where loops have been closed: the causal ones are before the correction.
   struct Closed {
     Timestamp last;                        ///< the last time: later causal poses are consistent
     std::map<std::size_t, SE3> keyframes;  ///< T_M_K by number
   };
-  /// Without any map match all poses are bit-identical to the causal ones.
-  Path path(const OdomToMap& odom_to_map, const std::optional<Closed>& closed = std::nullopt) const;
+  Solution solve(const OdomToMap& odom_to_map, const std::optional<Closed>& closed = std::nullopt) const;
+  /// T_M_B of all poses that were added. placed: better poses at some of their instants, in order of time; the others
+  /// follow them by the causal increments. A start without any has those of the solution: bit-identical to the causal
+  /// ones without any map match.
+  Trajectory path(const OdomToMap& odom_to_map, const Solution& solution, const Trajectory& placed = {}) const;
+
+  /// The map matches in the images of an instant.
+  struct Matches {
+    StampedPose T_O_B;  ///< refined
+    const std::vector<SE3>& T_B_C;
+    std::vector<MapObservation> observations;
+  };
+  /// Those from one instant to another, in order of time.
+  std::vector<Matches> matches(Timestamp first, Timestamp last) const;
+  /// The instants of the keyframes with a number, from the first of this run on; and that number.
+  std::map<Timestamp, std::size_t> keyframe_numbers() const;
 
  private:
   struct View {
@@ -79,6 +96,7 @@ class TrajectorySmoother {
   class Fit;
 
   bool relocalized() const;
+  static std::vector<MapObservation> observations(const View& view);
   static SE3 between(const Trajectory& moved, Timestamp t);
 
   MapFilterConfig config_;

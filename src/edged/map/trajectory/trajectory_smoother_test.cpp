@@ -54,6 +54,7 @@ class FlightRecordTest : public testing::Test {
     record_.add_observations({instant(t), T_O_B_}, {SE3()}, observations);
     odom_to_map_.correct(instant(t), T_M_O_);
   }
+  Trajectory path() const { return record_.path(odom_to_map_, record_.solve(odom_to_map_)); }
   static double error(const StampedPose& pose) {
     const double t = to_seconds(pose.t - Timestamp{});
     return (pose.T.translation() - true_pose(t).translation()).norm();
@@ -72,20 +73,20 @@ TEST_F(FlightRecordTest, GivesBackWhatWasToldWhereNothingWasFoundAgain) {
   record_.add_keyframe({instant(2.0), causal_[19].T});
   restart(5.0, SE3(so3::exp({0, 0, 0.3}), {0.1, 0.2, 0.3}));
   fly(5.0, 7.0);
-  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
-  ASSERT_EQ(path.poses.size(), causal_.size());
+  const Trajectory path = this->path();
+  ASSERT_EQ(path.size(), causal_.size());
   for (std::size_t i = 0; i < causal_.size(); ++i) {
-    EXPECT_EQ(path.poses[i].t, causal_[i].t);
-    EXPECT_EQ(path.poses[i].T.translation(), causal_[i].T.translation());
-    EXPECT_EQ(path.poses[i].T.rotation().coeffs(), causal_[i].T.rotation().coeffs());
+    EXPECT_EQ(path[i].t, causal_[i].t);
+    EXPECT_EQ(path[i].T.translation(), causal_[i].T.translation());
+    EXPECT_EQ(path[i].T.rotation().coeffs(), causal_[i].T.rotation().coeffs());
   }
-  EXPECT_EQ(path.keyframes.size(), 1U);
+  EXPECT_EQ(record_.solve(odom_to_map_).keyframes.size(), 1U);
 }
 
 TEST_F(FlightRecordTest, IsEmptyBeforeAnything) {
-  EXPECT_TRUE(record_.path(odom_to_map_).poses.empty());
+  EXPECT_TRUE(path().empty());
   restart(0.0, SE3());
-  EXPECT_TRUE(record_.path(odom_to_map_).poses.empty());
+  EXPECT_TRUE(path().empty());
 }
 
 TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) {
@@ -95,7 +96,7 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
   fly(0.5, 8.5);
   ASSERT_GT(error(causal_.back()), 0.06);
   observe(8.5, 0.5, keyframe);
-  const Trajectory poses = record_.path(odom_to_map_).poses;
+  const Trajectory poses = path();
   EXPECT_LT(error(poses.back()), 0.005);
   for (const StampedPose& pose : poses) EXPECT_LT(error(pose), 0.01);
 }
@@ -118,9 +119,9 @@ TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes
     }
   }
   ASSERT_GT(error(std::ranges::max(causal_, {}, error)), 0.05) << "it drifts until a place is observed again";
-  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
-  ASSERT_EQ(path.poses.size(), causal_.size());
-  for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
+  const Trajectory path = this->path();
+  ASSERT_EQ(path.size(), causal_.size());
+  for (const StampedPose& pose : path) EXPECT_LT(error(pose), 0.003) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
 TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
@@ -134,7 +135,7 @@ TEST_F(FlightRecordTest, TakesKeyframesForWhatTheyHadBecomeWhenTheyLeft) {
   fly(4.1, 8.5, 0.0);
   for (const double t : {4.0, 4.1, 4.2}) record_.refine({instant(t), true_pose(t)});
   observe(8.5, 0.5, keyframe);
-  for (const StampedPose& pose : record_.path(odom_to_map_).poses) EXPECT_LT(error(pose), 1e-3);
+  for (const StampedPose& pose : path()) EXPECT_LT(error(pose), 1e-3);
 }
 
 TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
@@ -156,8 +157,7 @@ TEST_F(FlightRecordTest, InterpolatesNothingAcrossANewStart) {
   observe(8.0, 0.5, keyframe);
   odom_to_map_.drop_dead_reckoning();
   fly(8.0, 8.5, 0.0);
-  for (const StampedPose& pose : record_.path(odom_to_map_).poses)
-    EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
+  for (const StampedPose& pose : path()) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
 }
 
 TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
@@ -171,11 +171,12 @@ TEST_F(FlightRecordTest, ComesAsAWholeIntoTheMapOfAnotherRun) {
   fly(5.0, 8.0, 0.0);
   observe(8.0, 7.5, 1);
   odom_to_map_.drop_dead_reckoning();
-  const TrajectorySmoother::Path path = record_.path(odom_to_map_);
-  EXPECT_EQ(path.poses.size(), causal_.size());
-  for (const StampedPose& pose : path.poses) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
+  const Trajectory path = this->path();
+  EXPECT_EQ(path.size(), causal_.size());
+  for (const StampedPose& pose : path) EXPECT_LT(error(pose), 0.005) << to_seconds(pose.t - Timestamp{}) << " s";
+  const std::vector<SE3> keyframes = record_.solve(odom_to_map_).keyframes;
   for (std::size_t k = 0; k < loaded.size(); ++k) {
-    EXPECT_LT((path.keyframes[k].inverse() * loaded[k]).log().norm(), 1e-6);
+    EXPECT_LT((keyframes[k].inverse() * loaded[k]).log().norm(), 1e-6);
   }
 }
 
@@ -186,7 +187,7 @@ TEST_F(FlightRecordTest, MovesWhatWasBeforeIntoTheMapsFrame) {
   restart(2.0, own);
   fly(2.0, 3.0, 0.0);
   odom_to_map_.transform_earlier(own.inverse());
-  const Trajectory moved = record_.path(odom_to_map_).poses;
+  const Trajectory moved = path();
   EXPECT_LT((moved.front().T.inverse() * own.inverse() * causal_.front().T).log().norm(), 1e-12);
   EXPECT_EQ(moved.back().T.matrix(), causal_.back().T.matrix()) << "the map has corrected the present start";
 }

@@ -51,6 +51,12 @@ Localization::Session Localization::new_session(const std::optional<BiasPrior>& 
           BiasHistory(noise_)};
 }
 
+/// Another one begins.
+void Localization::end_session(const std::optional<BiasPrior>& prior, Timestamp dead_reckoning_until) {
+  mapper_.end_start(session_.estimator.record());
+  session_ = new_session(prior, external_counters(), dead_reckoning_until);
+}
+
 /// For the start after the end of an estimate. Where the cameras contradict the IMU, its biases are those from before;
 /// where they do so again, after a start that has relied on these, they may be the wrong ones.
 std::optional<BiasPrior> Localization::prior_after_loss() const {
@@ -67,7 +73,7 @@ ExternalCounters Localization::external_counters() const {
 
 void Localization::begin_epoch() {
   if (session_.estimator.initialized()) place_.end_estimate(in_place());
-  session_ = new_session(session_.bias_prior, external_counters(), Timestamp::min());
+  end_session(session_.bias_prior, Timestamp::min());
   mapper_.begin_epoch();
   status_.set_lost("a clock was set back");
   if (attitude_) attitude_.emplace(noise_);
@@ -113,8 +119,7 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
     place_.end_estimate(status_.vision_lost()    ? dead_reckoning()
                         : status_.contradicted() ? contradicted()
                                                  : in_place());
-    session_ = new_session(prior_after_loss(), external_counters(),
-                           status_.vision_lost() ? t + kPipelineTuning.dead_reckoning : t);
+    end_session(prior_after_loss(), status_.vision_lost() ? t + kPipelineTuning.dead_reckoning : t);
   }
   output.correction.provisional = session_.estimator.provisional();
   return output;
@@ -149,7 +154,7 @@ LocalizationOutput Localization::end_at_gap(const Preintegration& motion, const 
   output.correction.ended = true;
   place_.end_estimate(in_place());
   place_.dead_reckon(motion);
-  session_ = new_session(prior_after_loss(), external_counters(), t);
+  end_session(prior_after_loss(), t);
   return output;
 }
 

@@ -55,7 +55,7 @@ class Localization {
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
   bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
-  FinalTrajectory final_trajectory() const { return mapper_.final_trajectory(); }
+  FinalTrajectory final_trajectory() const { return mapper_.final_trajectory(session_.estimator.record()); }
   Rig rig() const { return calibration_.total(); }
   std::optional<CalibrationCovariance> calibration_covariance(const std::string& camera) const;
   ExternalCounters external_counters() const;
@@ -75,6 +75,7 @@ class Localization {
     Eigen::Vector3d started_at_O = Eigen::Vector3d::Zero();
   };
   Session new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier, Timestamp until) const;
+  void end_session(const std::optional<BiasPrior>& prior, Timestamp dead_reckoning_until);
   std::optional<BiasPrior> prior_after_loss() const;
   EstimatorResult estimate(const EstimatorInput& input, VisionCorrection& correction);
   LandmarkDepths landmark_depths() const;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "edged/map/tuning.hpp"
+#include "edged/pipeline/mapping/final_optimization.hpp"
 
 namespace edged {
 namespace {
@@ -302,12 +303,23 @@ void Mapper::remove_keyframe(std::size_t keyframe) {
   filter_.remove_keyframe(keyframe);
 }
 
-FinalTrajectory Mapper::final_trajectory() const {
-  const TrajectorySmoother::Path path = record_.path(odom_to_map_, closed());
+void Mapper::end_start(StartRecord start) {
+  if (!start.empty()) starts_.push_back(std::move(start));
+}
+
+FinalTrajectory Mapper::final_trajectory(const StartRecord& present) const {
   FinalTrajectory all = previous_trajectory_;
-  all.poses.insert(all.poses.end(), path.poses.begin(), path.poses.end());
+  TrajectorySmoother::Solution solution = record_.solve(odom_to_map_, closed());
+  std::vector<StartRecord> starts = starts_;
+  if (!present.empty()) starts.push_back(present);
+  FinalCost cost;
+  const Trajectory placed = optimize_jointly(record_, starts, solution, cost);
+  const Trajectory path = record_.path(odom_to_map_, solution, placed);
+  all.initial_cost += cost.before;
+  all.final_cost += cost.after;
+  all.poses.insert(all.poses.end(), path.begin(), path.end());
   for (const MapKeyframe& keyframe : map_.keyframes())
-    all.keyframes.push_back(mapped(keyframe, path.keyframes[keyframe.number]));
+    all.keyframes.push_back(mapped(keyframe, solution.keyframes[keyframe.number]));
   return all;
 }
 

@@ -12,6 +12,7 @@
 
 #include "edged/core/odom_state.hpp"
 #include "edged/estimator/solver/sliding.hpp"
+#include "edged/estimator/window/start_record.hpp"
 #include "edged/final_trajectory.hpp"
 #include "edged/keyframe_record.hpp"
 #include "edged/map/keyframe_map.hpp"
@@ -60,8 +61,10 @@ class Mapper {
   std::optional<LoopClosure> loop_closure(Timestamp t) const {
     return closed_loop_ && closed_loop_->t == t ? std::optional(closed_loop_->closure) : std::nullopt;
   }
-  /// The trajectory in M, with those of earlier epochs.
-  FinalTrajectory final_trajectory() const;
+  /// A start of the estimator has ended: all its measurements.
+  void end_start(StartRecord start);
+  /// The trajectory in M, with those of earlier epochs. present: the start that has not ended.
+  FinalTrajectory final_trajectory(const StartRecord& present = {}) const;
 
   /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
   void load(const SavedMap& map);
@@ -100,6 +103,7 @@ class Mapper {
   MapFilter filter_;
   std::optional<SavedMap> fixed_;  ///< with localize_only: the covariance as loaded; the filter's may have other terms
   TrajectorySmoother record_;
+  std::vector<StartRecord> starts_;  ///< that have ended
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
   std::vector<MapMatch> matches_;      ///< in the newest images that were matched
