@@ -204,7 +204,8 @@ class Window {
   void restore(const std::vector<double>& estimates);
 
  private:
-  void observe_again(const StartRecord& record, std::size_t part);
+  void observe_again(const StartRecord& record, std::size_t part, std::map<FeatureId, std::size_t>& begins);
+  void anchor_at(Feature& feature, const Eigen::Vector3d& p_O) const;
   WindowState& state(StateId id);
   Feature& feature(FeatureId id);
   void observe(const CameraObservations& view);
