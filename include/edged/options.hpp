@@ -113,6 +113,9 @@ inline constexpr SensorDelays kInOrder{0.0, 0.0, 0.0, 0.0};
 struct FeedConfig {
   SensorDelays delays;
   Inference inference = Inference::Synchronous;  ///< OwnThread: no other stage waits for the depth network
+  /// Keep all measurements of keyframes for Odometry::final_trajectory, two megabytes a minute. Without them it is the
+  /// solution of a pose graph.
+  bool keeps_measurements = true;
 };
 
 }  // namespace edged

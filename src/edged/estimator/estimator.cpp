@@ -236,7 +236,7 @@ std::optional<CalibrationCovariance> Estimator::calibration_covariance(std::size
 
 StartRecord Estimator::record() const {
   StartRecord all;
-  if (!initialized_) return all;
+  if (!initialized_ || !keeps_record_) return all;
   all = record_;
   all.close(window_);
   return all;
@@ -367,7 +367,7 @@ std::vector<MarginalizedKeyframe> Estimator::slide() {
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states().size()) > config_.recent_states + config_.keyframes) {
-    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks, &record_));
+    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks, keeps_record_ ? &record_ : nullptr));
   }
   window_.remove_ended_tracks();
   return marginalized_keyframes;

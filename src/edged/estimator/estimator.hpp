@@ -68,8 +68,9 @@ class Estimator {
   const ExternalCounters& external_counters() const { return external_.counters(); }
 
   const Window& window() const { return window_; }
-  /// All measurements since the start; empty before it.
+  /// All measurements since the start; empty before it, and after keep_no_record().
   StartRecord record() const;
+  void keep_no_record() { keeps_record_ = false; }
 
  private:
   bool start(const EstimatorInput& input, EstimatorResult& result);
@@ -90,6 +91,7 @@ class Estimator {
   EstimatorConfig config_;
   Window window_;
   StartRecord record_;  ///< of what has left the window
+  bool keeps_record_ = true;
   StandstillDetector standstill_;
   ExternalFactors external_;
   Initializer initializer_;

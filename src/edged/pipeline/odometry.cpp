@@ -25,7 +25,7 @@ struct Odometry::Impl {
           return Packetizer(used, packets, so_far);
         }),
         packetizer(new_packetizer({})),
-        localization(used, noise, config, timings),
+        localization(used, noise, config, timings, feed.keeps_measurements),
         vision(without_offsets(used), config, feed.inference, timings) {}
 
   std::optional<Packet> next_packet();

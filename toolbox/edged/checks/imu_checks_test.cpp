@@ -30,7 +30,8 @@ TEST(Checks, NamesNoiseFarFromThatAtRestWithBothValues) {
 
 TEST(Checks, NamesAnAccelerometerThatDoesNotReadGravityAtRest) {
   RecordingStatistics s = healthy();
-  s.imu_details.rest = ImuRest{timestamp_from_seconds(1), std::chrono::seconds(2), 1e-4, 2e-3, {}, {0.1, 0.0, 10.2}};
+  s.imu_details.rest = ImuRest{timestamp_from_seconds(1), std::chrono::seconds(2),        1e-4, 2e-3,
+                               Eigen::Vector3d::Zero(),   Eigen::Vector3d(0.1, 0.0, 10.2)};
   EXPECT_THAT(remedy_of(s, {}, Warning, "accelerometer: it reads 10.20 m/s^2 at rest, for 2.0 s from 1.000 s on"),
               HasSubstr("a scale 4.0 % too large"));
   s.imu_details.rest->accel.z() = 9.7;

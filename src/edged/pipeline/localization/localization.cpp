@@ -31,8 +31,9 @@ std::vector<KeyframeRecord> in_map(const SE3& T_M_O, std::vector<MarginalizedKey
 }  // namespace
 
 Localization::Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config,
-                           StageTimings& timings)
+                           StageTimings& timings, bool keeps_measurements)
     : config_(config),
+      keeps_measurements_(keeps_measurements),
       noise_(noise),
       timings_(&timings),
       calibration_(cameras),
@@ -44,11 +45,13 @@ Localization::Localization(const Rig& cameras, const ImuNoise& noise, const Odom
 
 Localization::Session Localization::new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier,
                                                 Timestamp until) const {
-  return {{calibration_.rig(), noise_, config_.estimator, calibration_.intrinsics(), prior},
-          prior,
-          earlier,
-          until,
-          BiasHistory(noise_)};
+  Session session{{calibration_.rig(), noise_, config_.estimator, calibration_.intrinsics(), prior},
+                  prior,
+                  earlier,
+                  until,
+                  BiasHistory(noise_)};
+  if (!keeps_measurements_) session.estimator.keep_no_record();
+  return session;
 }
 
 /// Another one begins.

@@ -38,7 +38,9 @@ struct LocalizationOutput {
 class Localization {
  public:
   /// cameras: those of the run, event cameras first; config: validated.
-  Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config, StageTimings& timings);
+  /// keeps_measurements: FeedConfig's.
+  Localization(const Rig& cameras, const ImuNoise& noise, const OdometryConfig& config, StageTimings& timings,
+               bool keeps_measurements = true);
 
   /// Propagates the body to the last of the samples, which begin at its time, and returns that motion.
   Preintegration predict(const std::vector<ImuSample>& imu);
@@ -94,6 +96,7 @@ class Localization {
   Step describe(Timestamp t, TrackingStatus status, EstimatorResult result) const;
 
   OdometryConfig config_;
+  bool keeps_measurements_;
   ImuNoise noise_;
   StageTimings* timings_;
   OnlineCalibration calibration_;
