@@ -35,7 +35,8 @@ void stamp(Step& step, std::optional<Estimate>& base, Duration set_by) {
 Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& transport)
     : transport_(transport),
       rig_name_(calibration.rig.name),
-      odometry_(calibration.rig, calibration.imu, config.mode, config.options, {config.delays, Inference::OwnThread, false}),
+      odometry_(calibration.rig, calibration.imu, config.mode, config.options,
+                {config.delays, Inference::OwnThread, false}),
       base_(transport, config),
       outputs_(transport, config, base_.given()),
       imu_rate_(transport, config, calibration.imu.gyro_noise),

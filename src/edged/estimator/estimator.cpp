@@ -367,7 +367,8 @@ std::vector<MarginalizedKeyframe> Estimator::slide() {
     if (!aged->second.keyframe) drop_or_promote(window_, aged->first, config_.max_interval_s);
   }
   while (static_cast<int>(window_.states().size()) > config_.recent_states + config_.keyframes) {
-    marginalized_keyframes.push_back(drop_oldest_keyframe(window_, config_.landmarks, keeps_record_ ? &record_ : nullptr));
+    marginalized_keyframes.push_back(
+        drop_oldest_keyframe(window_, config_.landmarks, keeps_record_ ? &record_ : nullptr));
   }
   window_.remove_ended_tracks();
   return marginalized_keyframes;
