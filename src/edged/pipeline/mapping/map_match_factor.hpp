@@ -31,7 +31,7 @@ class MapMatchFactor final : public Factor {
   MapMatchFactor(const MatchedImage& image, const MatchedKeyframe& keyframe, const MapObservation& observation,
                  const Eigen::Matrix2d& whiten, double share);
   const ceres::LossFunction* loss() const override { return &loss_; }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  bool Evaluate(double const* const* values, double* residuals, double** jacobians) const override;
 
  private:
   SE3 T_A_B_, T_B_C_, T_O_K_;
