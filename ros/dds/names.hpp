@@ -40,7 +40,7 @@ class Names {
   /// Throws InputError for a remapping of a name that full_name() was never asked for, with those that it was.
   void check_remappings() const;
   /// "/robot/edged"
-  std::string full_node_name() const { return expand("~/").substr(0, expand("~/").size() - 1); }
+  std::string full_node_name() const { return expand(node_); }
   const std::string& name_space() const { return name_space_; }  ///< "/" or "/robot"
   const std::string& node() const { return node_; }
 

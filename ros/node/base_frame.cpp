@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "edged/core/check.hpp"
+#include "edged/core/config/option_text.hpp"
 
 namespace edged::node {
 namespace {
@@ -23,10 +24,7 @@ SE3 pose_from(const std::string& text) {
   for (double& number : rpy) in >> number;
   if (in.fail() || in >> rest || !p.allFinite() || !rpy.allFinite())
     throw InputError::format("body_pose '{}': give six numbers, x y z [m] roll pitch yaw [rad]", text);
-  const Eigen::Quaterniond q = Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                               Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                               Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
-  return {q, p};
+  return {rotation_of(rpy), p};
 }
 
 }  // namespace
@@ -36,14 +34,14 @@ void StaticTransforms::add(Wire wire, ByteSpan message) {
   try {
     WireReader reader(wire, message);
     for (std::uint32_t left = reader.list(kSmallestTransform); left > 0; --left) {
-      if (wire == Wire::Ros1) reader.number<std::uint32_t>();  // of the header
-      reader.time();
-      const std::string parent(reader.text()), child(reader.text());
+      std::string_view parent;
+      reader.header(&parent);
+      const std::string child(reader.text());
       const Eigen::Vector3d p = reader.vector<3>();
       const Eigen::Vector4d q = reader.vector<4>();
       const bool usable = p.allFinite() && std::abs(q.norm() - 1.0) < 1e-3;
       if (usable && (edges_.contains(child) || edges_.size() < kMostFrames))
-        edges_.insert_or_assign(child, Edge{parent, SE3(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), p)});
+        edges_.insert_or_assign(child, Edge{std::string(parent), SE3(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), p)});
     }
   } catch (const Damage&) {  // the publisher's next message will do
   }

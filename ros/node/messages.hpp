@@ -37,9 +37,9 @@ struct Estimate {
   double gyro_sigma = 0.0;  ///< [rad/s] of gyro_B; 0: unknown
 };
 
-/// The same motion of another frame on the body. T_B_C: of that frame.
+/// The estimate of another frame on the body, which moves with it. T_B_C: pose of that frame on the body.
 Estimate at(const SE3& T_B_C, const Estimate& of_body);
-/// The same state in another frame of the world. T_V_W: of the present one in that.
+/// The estimate as seen from another frame of the world. T_V_W: pose of the present one in that.
 Estimate in(const SE3& T_V_W, const Estimate& in_W);
 
 /// nav_msgs/Odometry: the pose of the base in odom, and its velocities in the base's axes. The covariance of the pose

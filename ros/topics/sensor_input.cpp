@@ -14,7 +14,6 @@
 namespace edged::node {
 namespace {
 
-constexpr Duration kStep = std::chrono::milliseconds(25);  // SensorClock takes more for a clock that was set
 constexpr Duration kJumpAhead = std::chrono::seconds(1);
 constexpr std::uint64_t kMostMissed = 1'000'000;                        // a larger gap is a new way of counting
 constexpr Duration kShortestInterval = std::chrono::microseconds(100);  // no IMU is faster
@@ -103,7 +102,7 @@ void SensorInput::note_packet(const EventPacket& packet, const std::vector<Event
   const std::lock_guard lock(mutex_);
   counters_.time_back += back;
   counters_.time_ahead += ahead;
-  if (jitter < kStep) counters_.stamp_jitter = std::max(counters_.stamp_jitter, jitter);
+  if (jitter < SensorClock::kStep) counters_.stamp_jitter = std::max(counters_.stamp_jitter, jitter);
 }
 
 /// Numbers rise by one. If they do not rise, the sender does not count, or has restarted.

@@ -3,17 +3,16 @@
 #include "edged/map/odom_to_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+
+#include "edged/core/directions.hpp"
 
 namespace edged {
 
 void OdomToMap::restart(const SE3& T_new_old, const OdomState& now) {
   if (started_) {
     const SE3 T_Oold_Onew = T_new_old.inverse();
-    const Eigen::Matrix3d R = (T_M_O_ * T_Oold_Onew).R();
-    const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
-    const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
+    const Eigen::Quaterniond q = nearest_yaw((T_M_O_ * T_Oold_Onew).R());
     const Eigen::Vector3d p_M_B = T_M_O_ * (T_Oold_Onew * now.T_O_B.translation());
     T_M_O_ = SE3(q, p_M_B - q * now.T_O_B.translation());
   }

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <optional>
 
+#include "edged/core/directions.hpp"
 #include "edged/eval/association.hpp"
 
 namespace edged {
@@ -22,9 +23,7 @@ constexpr Duration kSilentAfter = std::chrono::milliseconds(500);
 
 /// Alignment of the estimate with the truth in position and yaw.
 SE3 gauge(const SE3& truth, const SE3& estimate) {
-  const Eigen::Matrix3d R = (truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix();
-  const double yaw = std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
-  const Eigen::Quaterniond q = so3::exp({0.0, 0.0, yaw});
+  const Eigen::Quaterniond q = nearest_yaw((truth.rotation() * estimate.rotation().conjugate()).toRotationMatrix());
   return {q, truth.translation() - q * estimate.translation()};
 }
 

@@ -22,10 +22,13 @@ Eigen::Vector3d three_numbers(const std::string& text, std::string_view key) {
   return numbers;
 }
 
-Eigen::Quaterniond rotation_of_degrees(const std::string& text, std::string_view key) {
-  const Eigen::Vector3d angles = kDegree * three_numbers(text, key);
+Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angles) {
   return so3::exp(Eigen::Vector3d(0.0, 0.0, angles.z())) * so3::exp(Eigen::Vector3d(0.0, angles.y(), 0.0)) *
          so3::exp(Eigen::Vector3d(angles.x(), 0.0, 0.0));
+}
+
+Eigen::Quaterniond rotation_of_degrees(const std::string& text, std::string_view key) {
+  return rotation_of(kDegree * three_numbers(text, key));
 }
 
 }  // namespace edged

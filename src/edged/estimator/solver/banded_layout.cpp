@@ -12,24 +12,6 @@
 namespace edged {
 namespace {
 
-/// The blocks of each term that couples them. Inverse depths that are eliminated are not among them.
-template <typename Visit>
-void for_each_term(const Cost& cost, const Visit& visit) {
-  if (cost.prior) visit(cost.prior->blocks());
-  for (const auto& factor : cost.factors) visit(factor->blocks());
-  std::vector<BlockKey> blocks;
-  for (const LandmarkTerm& term : cost.landmarks) {
-    if (term.residuals.empty()) continue;
-    blocks.assign({{BlockKind::Pose, term.anchor.state}, {BlockKind::Calibration, term.anchor.camera}});
-    if (term.coupled) blocks.push_back({BlockKind::InverseDepth, term.id});
-    for (const LandmarkResidual& residual : term.residuals) {
-      blocks.push_back({BlockKind::Pose, residual.seen.state});
-      blocks.push_back({BlockKind::Calibration, residual.seen.camera});
-    }
-    visit(blocks);
-  }
-}
-
 /// Where blocks belong in time: a number that grows with the states.
 class Times {
  public:
@@ -85,7 +67,7 @@ std::set<BlockKey> revisited(const Cost& cost, const Times& times) {
 std::vector<EnvelopeMatrix::Rows> envelope_of(const Cost& cost, const Layout& layout,
                                               const std::vector<BlockKey>& order) {
   std::map<BlockKey, Eigen::Index> first = layout.offset;
-  for_each_term(cost, [&](const std::vector<BlockKey>& blocks) {
+  for_each_term(cost, [&](std::span<const BlockKey> blocks) {
     Eigen::Index least = layout.size;
     for (const BlockKey& key : blocks) least = std::min(least, layout.offset.at(key));
     for (const BlockKey& key : blocks) first.at(key) = std::min(first.at(key), least);

@@ -23,7 +23,7 @@ class EnvelopeMatrix {
   EnvelopeMatrix() = default;
   /// Zero.
   explicit EnvelopeMatrix(std::span<const Rows> blocks);
-  /// Of a dense matrix.
+  /// The lower triangle of a dense matrix.
   explicit EnvelopeMatrix(const Eigen::MatrixXd& lower);
 
   Index size() const { return static_cast<Index>(first_.size()); }

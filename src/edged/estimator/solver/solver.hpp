@@ -15,7 +15,7 @@ struct SolveSummary {
 
 /// Minimises the sum of the window's terms over all its blocks, in place. One thread; deterministic.
 SolveSummary solve(Window& window, int max_iterations);
-/// The same for a window of any length, in time and memory that grow with it (banded_layout).
+/// Solves a window of any length as solve() does, in time and memory that grow with its length (banded_layout).
 SolveSummary solve_long(Window& window, int max_iterations);
 
 }  // namespace edged

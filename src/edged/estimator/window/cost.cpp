@@ -60,21 +60,29 @@ const ceres::LossFunction& visual_loss() {
   return loss;
 }
 
-std::set<BlockKey> blocks_of(const Cost& cost) {
-  std::set<BlockKey> blocks;
-  if (cost.prior) blocks.insert(cost.prior->blocks().begin(), cost.prior->blocks().end());
-  for (const auto& factor : cost.factors) blocks.insert(factor->blocks().begin(), factor->blocks().end());
+void for_each_term(const Cost& cost, const std::function<void(std::span<const BlockKey>)>& visit) {
+  if (cost.prior) visit(cost.prior->blocks());
+  for (const auto& factor : cost.factors) visit(factor->blocks());
+  std::vector<BlockKey> blocks;
   for (const LandmarkTerm& term : cost.landmarks) {
-    if (term.coupled) blocks.insert({BlockKind::InverseDepth, term.id});
-    if (term.residuals.empty()) continue;
-    blocks.insert({BlockKind::Pose, term.anchor.state});
-    blocks.insert({BlockKind::Calibration, term.anchor.camera});
-    for (const LandmarkResidual& residual : term.residuals) {
-      blocks.insert({BlockKind::Pose, residual.seen.state});
-      blocks.insert({BlockKind::Calibration, residual.seen.camera});
+    blocks.clear();
+    if (term.coupled) blocks.push_back({BlockKind::InverseDepth, term.id});
+    if (!term.residuals.empty()) {
+      blocks.push_back({BlockKind::Pose, term.anchor.state});
+      blocks.push_back({BlockKind::Calibration, term.anchor.camera});
     }
+    for (const LandmarkResidual& residual : term.residuals) {
+      blocks.push_back({BlockKind::Pose, residual.seen.state});
+      blocks.push_back({BlockKind::Calibration, residual.seen.camera});
+    }
+    visit(blocks);
   }
-  return blocks;
+}
+
+std::set<BlockKey> blocks_of(const Cost& cost) {
+  std::set<BlockKey> all;
+  for_each_term(cost, [&](std::span<const BlockKey> blocks) { all.insert(blocks.begin(), blocks.end()); });
+  return all;
 }
 
 std::vector<TrackStep> track_steps(const Window& window, const Feature& feature, Observations observations) {

@@ -5,7 +5,9 @@
 
 #include <ceres/loss_function.h>
 
+#include <functional>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "edged/estimator/factors/factor.hpp"
@@ -63,7 +65,10 @@ Cost cost_of(const Window& window, Observations observations = Observations::All
 /// The robust loss of all observations.
 const ceres::LossFunction& visual_loss();
 
-/// The blocks of its terms, without the inverse depths that can be eliminated one by one.
+/// Visits the blocks that each term couples, without the inverse depths that can be eliminated one by one.
+void for_each_term(const Cost& cost, const std::function<void(std::span<const BlockKey>)>& visit);
+
+/// All of them.
 std::set<BlockKey> blocks_of(const Cost& cost);
 
 /// Root mean square of the residuals of the IMU factors [sigma]. Small as long as cameras and IMU agree: IMU factors

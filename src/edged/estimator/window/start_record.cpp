@@ -18,9 +18,11 @@ void StartRecord::add_oldest(const Window& window, std::span<const std::shared_p
   add_parameters(window);
   for (const auto& [id, feature] : window.features()) {
     if (!feature.anchor) continue;
-    const auto heir = inherited.find(id);
-    const bool ends = feature.anchor->state == oldest && heir == inherited.end();
-    const StateId until = heir != inherited.end() ? heir->second.key.state : ends ? window.newest_id() + 1 : oldest + 1;
+    const auto new_anchor = inherited.find(id);
+    const bool ends = feature.anchor->state == oldest && new_anchor == inherited.end();
+    const StateId until = new_anchor != inherited.end() ? new_anchor->second.key.state
+                          : ends                        ? window.newest_id() + 1
+                                                        : oldest + 1;
     add_observations(window, id, feature, [&](StateId state) {
       return state < until && (state == oldest || window.states().at(state).keyframe);
     });

@@ -52,7 +52,7 @@ struct StartRecord {
   std::vector<Part> parts;
   std::vector<std::shared_ptr<const Factor>> factors;  ///< without those that follow from the states
   std::vector<Parameter> parameters;
-  // Of the window that was closed.
+  // What the window had when it was closed.
   std::vector<WindowCamera> cameras;
   ImuIntrinsicsBlock imu_intrinsics{};
   TrackNoise track_noise;

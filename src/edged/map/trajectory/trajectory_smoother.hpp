@@ -44,7 +44,7 @@ class TrajectorySmoother {
   struct Solution {
     std::vector<Trajectory> T_M_O;
     std::vector<SE3> keyframes;  ///< T_M_K
-    /// Of the start at that time.
+    /// T_M_O at that time, of the start to which it belongs.
     SE3 at(const TrajectorySmoother& record, Timestamp t) const;
   };
   /// Initial values where loops have been closed: the causal ones are before the correction.
@@ -64,7 +64,7 @@ class TrajectorySmoother {
     const std::vector<SE3>& T_B_C;
     std::vector<MapObservation> observations;
   };
-  /// Those from one instant to another, in order of time.
+  /// The matches from one instant to another, in order of time.
   std::vector<Matches> matches(Timestamp first, Timestamp last) const;
   /// The instants of the keyframes with a number, from the first of this run on; and that number.
   std::map<Timestamp, std::size_t> keyframe_numbers() const;

@@ -59,7 +59,7 @@ class PlaceUncertainty {
   /// By losses: of the start of the present estimate.
   double position() const { return position_; }  ///< [m]
   double yaw() const { return yaw_; }            ///< [rad]
-  /// Of the position, where it speaks against the estimate; else 0. known_place: a map of before shows the place.
+  /// Sigma of the position, where it speaks against the estimate; else 0. known_place: a map of before shows the place.
   /// Without one, dead reckoning is all there is.
   double doubt(bool known_place) const { return std::hypot(measured_ && !known_place ? 0.0 : position_, by_gap_); }
 

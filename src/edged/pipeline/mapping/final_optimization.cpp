@@ -4,12 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "edged/core/directions.hpp"
 #include "edged/estimator/solver/solver.hpp"
 #include "edged/estimator/window/landmarks.hpp"
 #include "edged/map/map_errors.hpp"
@@ -32,8 +32,7 @@ Eigen::Matrix2d inverse_root(const Eigen::Matrix2d& R) {
 
 /// A rotation about z and a translation, by which gravity stays as it is.
 SE3 upright(const SE3& T_M_B, const SE3& T_O_B) {
-  const Eigen::Matrix3d R = (T_M_B * T_O_B.inverse()).R();
-  const Eigen::Quaterniond q = so3::exp({0.0, 0.0, std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1))});
+  const Eigen::Quaterniond q = nearest_yaw((T_M_B * T_O_B.inverse()).R());
   return {q, T_M_B.translation() - q * T_O_B.translation()};
 }
 
@@ -158,13 +157,13 @@ class StartOptimization {
 
 }  // namespace
 
-Trajectory optimize_jointly(const TrajectorySmoother& record, std::span<const StartRecord> starts,
+Trajectory optimize_jointly(const TrajectorySmoother& record, std::vector<StartRecord> starts,
                             TrajectorySmoother::Solution& solution, FinalCost& cost) {
   const std::map<Timestamp, std::size_t> numbers = record.keyframe_numbers();
   Trajectory all;
-  for (const StartRecord& start : starts) {
+  for (StartRecord& start : starts) {
     if (start.states.size() < 2) continue;
-    for (const StampedPose& pose : StartOptimization(record, start, solution).optimize(cost)) {
+    for (const StampedPose& pose : StartOptimization(record, std::move(start), solution).optimize(cost)) {
       if (const auto number = numbers.find(pose.t); number != numbers.end())
         solution.keyframes[number->second] = pose.T;
       all.push_back(pose);

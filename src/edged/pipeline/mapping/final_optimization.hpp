@@ -4,8 +4,7 @@
 // map matches between them.
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include <vector>
 
 #include "edged/estimator/window/start_record.hpp"
 #include "edged/map/trajectory/trajectory_smoother.hpp"
@@ -20,7 +19,7 @@ struct FinalCost {
 /// The poses T_M_B of all keyframes of all starts, in order of time: one start after the other, in the map of those
 /// before it and of a loaded map. `solution` has the initial values; its keyframes are replaced by the new ones.
 /// A start whose cost is not defined at the initial values has none. Deterministic.
-Trajectory optimize_jointly(const TrajectorySmoother& record, std::span<const StartRecord> starts,
+Trajectory optimize_jointly(const TrajectorySmoother& record, std::vector<StartRecord> starts,
                             TrajectorySmoother::Solution& solution, FinalCost& cost);
 
 }  // namespace edged

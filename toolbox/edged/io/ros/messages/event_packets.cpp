@@ -106,8 +106,7 @@ std::optional<EvtFormat> evt_format(std::string_view encoding) {
 
 /// Stamps of arrival are late after a stall, too, but by less with each packet that had to wait.
 bool SensorClock::is_set(Timestamp first, Timestamp stamp, Duration off) {
-  constexpr auto kJitter = std::chrono::milliseconds(5), kStep = std::chrono::milliseconds(25),
-                 kConfirmed = std::chrono::milliseconds(20);
+  constexpr auto kJitter = std::chrono::milliseconds(5), kConfirmed = std::chrono::milliseconds(20);
   if (std::chrono::abs(off) < kStep) {
     apart_.reset();
     return false;

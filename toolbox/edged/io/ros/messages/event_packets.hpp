@@ -21,15 +21,17 @@ struct ClockStep {
 /// The clock of a sensor on that of the stamps. Aligned by the first packet, it then follows the drift between the two,
 /// by at most 500 ppm and with a time constant of 5 s, so that intervals are those of the sensor, without the jitter
 /// of the stamps. Where one of the two clocks is set, as the computer's by NTP after its start, it is aligned anew:
-/// when they have stayed apart by more than 25 ms, and by as much, for 20 ms of the sensor's time.
+/// when they have stayed apart by kStep or more, and by as much, for 20 ms of the sensor's time.
 class SensorClock {
  public:
+  static constexpr Duration kStep = std::chrono::milliseconds(25);  ///< less is jitter of the stamps
+
   /// What to add to the times of a packet with these first and last ones. Does not turn the order of two packets round.
   Duration offset(Timestamp first, Timestamp last, Timestamp stamp);
   void reset() { *this = SensorClock(steps_); }
   const std::vector<ClockStep>& steps() const { return steps_; }
   bool known() const { return offset_.has_value(); }
-  /// That of the newest packet.
+  /// The stamp of the newest packet.
   Timestamp stamp() const { return last_stamp_; }
   /// The newest packet was not where the clocks put it: one of the two may have been set.
   bool in_doubt() const { return apart_.has_value(); }

@@ -37,10 +37,11 @@ Timestamp WireReader::time() {
   return timestamp_from_ns(ns);
 }
 
-Timestamp WireReader::header() {
+Timestamp WireReader::header(std::string_view* frame_id) {
   if (wire_ == Wire::Ros1) number<std::uint32_t>();  // seq
   const Timestamp stamp = time();
-  text();  // frame_id
+  const std::string_view frame = text();
+  if (frame_id != nullptr) *frame_id = frame;
   return stamp;
 }
 

@@ -41,8 +41,8 @@ class WireReader {
   std::string_view text();
   ByteSpan bytes();
   Timestamp time();
-  /// The stamp of a std_msgs/Header.
-  Timestamp header();
+  /// The stamp of a std_msgs/Header, and the name of its frame where that is wanted.
+  Timestamp header(std::string_view* frame_id = nullptr);
   /// Length of a list whose items have at least that many bytes.
   std::uint32_t list(std::size_t item_bytes);
 
