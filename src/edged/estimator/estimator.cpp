@@ -96,8 +96,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
                   [&] { return known_motion(input); });
   result.noise_at_rest = standstill_.noise_at_rest();
   if (input.motion.gap_s() > 0.0) supported_at_ = input.t;  // a turn in place is found by the gyro
-  const std::optional<double> turning = turning_in_place(input);
-  result.standstill = standstill_.still() || stationary_by_vision() || turning;
+  const std::optional<FlowVelocity> turning = turning_in_place(input);
+  result.standstill = standstill_.still() || stationary_by_vision() || turning.has_value();
   if (start(input, result) || !initialized_) return result;
   append(input, turning);
   result.velocity_observed = external_.velocity_observed(input.t);
@@ -169,28 +169,19 @@ bool Estimator::stationary_by_vision() const {
          newest().v_O.norm() < kEstimatorTuning.max_standstill_speed;
 }
 
-/// Standard deviation of the velocity of a body that has turned without translation for a while: features have been
-/// followed without a parallax that would tell their depth, and the estimate does not contradict. Nothing otherwise.
-std::optional<double> Estimator::turning_in_place(const EstimatorInput& input) const {
+/// Velocity of a body that has turned without much translation for a while, from features that were followed without a
+/// parallax that would tell their depth, if the estimate does not contradict. Nothing otherwise.
+std::optional<FlowVelocity> Estimator::turning_in_place(const EstimatorInput& input) const {
   if (!initialized_ || input.t - supported_at_ < kEstimatorTuning.turning_after) return std::nullopt;
-  std::vector<double> ages_s;
-  for (const auto& [id, feature] : window_.features()) {
-    if (feature.observations.empty()) continue;
-    const Timestamp first = window_.states().at(feature.observations.begin()->first.state).t;
-    const bool seen =
-        std::ranges::any_of(feature.last_seen, [&](const auto& at) { return at.second == window_.newest_id(); });
-    if (seen && !feature.anchor) ages_s.push_back(to_seconds(input.t - first));
-  }
-  if (ages_s.size() < kStandstillTuning.min_features) return std::nullopt;
-  const double age_s = median(std::move(ages_s));
-  if (age_s < kEstimatorTuning.min_track_s) return std::nullopt;
-  const double sigma =
-      std::max(kEstimatorTuning.vision_rest_sigma, kLandmarkTuning.min_parallax_deg * kDegree * depth_m_ / age_s);
+  std::optional<FlowVelocity> flow = flow_velocity(window_, depth_m_);
+  if (!flow) return std::nullopt;
+  flow->sigma = std::max(kEstimatorTuning.turning_sigma, flow->sigma);
   const std::optional<KnownMotion> known = known_motion(input);
   const bool plausible =
       known && known->speed < std::max(kEstimatorTuning.max_standstill_speed,
-                                       kEstimatorTuning.consistent_sigma * std::hypot(known->speed_sigma, sigma));
-  return plausible ? std::optional(sigma) : std::nullopt;
+                                       flow->v_O.norm() + kEstimatorTuning.consistent_sigma *
+                                                              std::hypot(known->speed_sigma, flow->sigma));
+  return plausible ? flow : std::nullopt;
 }
 
 /// The motion predicted to the input by the IMU; its uncertainty is that of the newest state and of the IMU since.
@@ -254,7 +245,7 @@ std::optional<LogScale> Estimator::depth_scale() const {
   return config_.depth_factor.enabled ? std::optional(depth_scale_) : std::nullopt;
 }
 
-void Estimator::append(const EstimatorInput& input, std::optional<double> turning) {
+void Estimator::append(const EstimatorInput& input, const std::optional<FlowVelocity>& turning) {
   const OdomState before = newest();
   Preintegration imu = since_newest(input);
   OdomState nav = propagate(before, imu);
@@ -273,7 +264,10 @@ void Estimator::append(const EstimatorInput& input, std::optional<double> turnin
   };
   if (!stationary && stationary_by_vision()) hold_velocity(kEstimatorTuning.vision_rest_sigma, kFree);
   // The error of the mean velocity lasts: all packets of a second are as good as one.
-  if (!stationary && turning) hold_velocity(*turning / std::sqrt(std::min(1.0, input.motion.dt())), kFree);
+  if (!stationary && turning) {
+    rest.v_O = turning->v_O;
+    hold_velocity(turning->sigma / std::sqrt(std::min(1.0, input.motion.dt())), kFree);
+  }
   if (!stationary) return;
   rest.bias_gyro = standstill_.mean_gyro_B();
   // The means of successive packets overlap: each packet adds no more than its own samples tell.
@@ -331,7 +325,7 @@ void Estimator::optimize(EstimatorResult& result) {
       ++result.landmarks_seen;
     }
   }
-  if (!depths_m.empty()) depth_m_ = median(std::move(depths_m));
+  if (depths_m.size() >= kStandstillTuning.min_features) depth_m_ = median(std::move(depths_m));
   landmarks_in_view_ = result.landmarks_seen > 0;
   if (result.landmarks_seen >= kEstimatorTuning.min_supporting || standstill_.still()) supported_at_ = newest().t;
 }

@@ -15,6 +15,7 @@
 #include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/depth_terms.hpp"
 #include "edged/estimator/window/estimator_input.hpp"
+#include "edged/estimator/window/flow_velocity.hpp"
 #include "edged/estimator/window/window.hpp"
 #include "edged/options/estimator.hpp"
 
@@ -79,8 +80,8 @@ class Estimator {
   std::optional<KnownMotion> known_motion(const EstimatorInput& input) const;
   Preintegration since_newest(const EstimatorInput& input) const;
   bool stationary_by_vision() const;
-  void append(const EstimatorInput& input, std::optional<double> turning);
-  std::optional<double> turning_in_place(const EstimatorInput& input) const;
+  void append(const EstimatorInput& input, const std::optional<FlowVelocity>& turning);
+  std::optional<FlowVelocity> turning_in_place(const EstimatorInput& input) const;
   bool add_depth(const EstimatorInput& input);
   bool solve_window();
   bool raise_imu_noise();

@@ -22,8 +22,9 @@ inline constexpr FactorTuning kFactorTuning{};
 
 /// Landmarks and their observations.
 struct LandmarkTuning {
-  double min_parallax_deg = 0.6;          ///< between the rays of a feature that becomes a landmark
-  double max_innovation_sigma = 6.0;      ///< observations farther from their prediction by the IMU are removed [023]
+  double min_parallax_deg = 0.6;      ///< between the rays of a feature that becomes a landmark
+  double translation_sigmas = 2.0;    ///< of chance: more points with parallax are before a camera than behind it [016]
+  double max_innovation_sigma = 6.0;  ///< observations farther from their prediction by the IMU are removed [023]
   double track_correlation_time_s = 2.0;  ///< errors along a track correlate by exp(-dt / this) [018]
   std::size_t min_observations = 4;       ///< observations of a landmark whose mean residual is judged [019]
   std::size_t min_landmarks = 12;  ///< landmarks of a camera, for a median of residuals that outliers do not move
@@ -197,10 +198,11 @@ struct EstimatorTuning {
   double max_standstill_speed = 0.15;  ///< [m/s] a faster body is not at rest, unless the IMU alone detects it [021]
   double vision_rest_sigma = 0.05;     ///< [m/s] of a body at rest by its image alone, near the estimate
   Duration turning_after = std::chrono::milliseconds(500);  ///< without support: a body that moves has shown parallax
-  int min_supporting = 8;              ///< landmarks in view that bound the drift, as many as Good needs
-  double min_track_s = 0.2;            ///< median age of tracks that tell a turn in place
-  double consistent_sigma = 3.0;       ///< a turn in place is none if the speed is beyond so many of its sigmas
-  double gyro_bias_drift = 3e-4;       ///< [rad/s] of a gyro's bias since it was last observed
+  int min_supporting = 8;         ///< landmarks in view that bound the drift, as many as Good needs
+  double turning_sigma = 0.02;    ///< [m/s] least of a turn in place: the velocity changes while features are followed
+  double flow_depth_sigma = 0.7;  ///< of ln depth of a scene that shows no parallax: a factor of two
+  double consistent_sigma = 3.0;  ///< a turn in place is none if the speed is beyond so many of its sigmas
+  double gyro_bias_drift = 3e-4;  ///< [rad/s] of a gyro's bias since it was last observed
   double rest_gyro_bias_sigma = 5e-4;  ///< [rad/s] where the IMU alone detects a rest: a body at rest turns no faster
 };
 inline constexpr EstimatorTuning kEstimatorTuning{};

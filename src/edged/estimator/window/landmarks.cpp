@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "edged/camera/two_view.hpp"
+#include "edged/core/angles.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/camera_poses.hpp"
@@ -36,19 +36,64 @@ bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
   return inverse_depth > 1.0 / config.max_depth_m && inverse_depth < 1.0 / config.min_depth_m;
 }
 
-void triangulate_feature(Window& window, FeatureId id, const Feature& feature, const LandmarkConfig& config) {
+/// Where the rays of a track with parallax meet.
+enum class Side { Before, Behind };
+
+struct Triangulation {
+  Side side;
+  NewAnchor anchor;  ///< without inverse depth where the point is behind the camera
+};
+
+/// Nothing where there is too little parallax, or the views contradict one another.
+std::optional<Triangulation> triangulate_feature(const Window& window, const Feature& feature,
+                                                 const LandmarkConfig& config) {
   const std::optional<ObservationKey> anchor = oldest_view(window, feature);
-  if (!anchor || !can_be_judged(feature)) return;
-  std::vector<View> views;
+  if (!anchor || !can_be_judged(feature)) return std::nullopt;
+  std::vector<Ray> rays;
   double sigma = 0.0;
   for (const auto& [view, observation] : feature.observations) {
-    views.push_back({window.T_O_C(view), window.point(view, observation)});
+    rays.push_back(ray_of({window.T_O_C(view), window.point(view, observation)}));
     sigma = observation.sigma;
   }
-  const auto point = triangulate(views, kLandmarkTuning.min_parallax_deg * std::numbers::pi / 180.0);
-  if (!point || point->rms_residual > config.max_residual_sigma * sigma) return;
+  const double parallax = largest_angle(rays);
+  if (parallax < kLandmarkTuning.min_parallax_deg * kDegree) return std::nullopt;
+  const auto point = triangulate(rays, parallax);
+  if (!point) return Triangulation{Side::Behind, {*anchor, 0.0}};
+  if (point->rms_residual > config.max_residual_sigma * sigma) return std::nullopt;
   const auto inverse_depth = inverse_depth_in(window, *anchor, point->p_A, config);
-  if (inverse_depth) window.make_landmark(id, {*anchor, *inverse_depth});
+  return inverse_depth ? std::optional(Triangulation{Side::Before, {*anchor, *inverse_depth}}) : std::nullopt;
+}
+
+/// Landmarks of each camera: those that are no longer observed still constrain the window, but must not take the budget
+/// of observed ones.
+class LandmarkBudget {
+ public:
+  LandmarkBudget(std::size_t cameras, int most) : most_(most), observed_(cameras, 0), all_(cameras, 0) {}
+
+  void add(const Window& window, const Feature& landmark) {
+    for (const auto& [camera, last_seen] : landmark.last_seen) {
+      ++all_[camera];
+      if (window.alive(landmark, camera)) ++observed_[camera];
+    }
+  }
+  bool has_room(const Window& window, const Feature& feature) const {
+    return std::ranges::any_of(feature.last_seen, [&](const auto& seen) {
+      const std::size_t camera = seen.first;
+      return all_[camera] < 2 * most_ && (!window.alive(feature, camera) || observed_[camera] < most_);
+    });
+  }
+  int observed(std::size_t camera) const { return observed_[camera]; }
+  int all(std::size_t camera) const { return all_[camera]; }
+
+ private:
+  int most_;  ///< per camera
+  std::vector<int> observed_, all_;
+};
+
+/// Without translation the errors of tracks pass for parallax, and put a point behind the cameras as often as before
+/// them; with it, hardly any is behind them.
+bool shows_translation(int before, int behind) {
+  return behind == 0 || before - behind >= kLandmarkTuning.translation_sigmas * std::sqrt(before + behind);
 }
 
 /// Where the states of the present window see from.
@@ -142,37 +187,36 @@ void LandmarkConfig::visit(ConfigFields& fields) {
 
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
   const bool ended_too = tracks == Tracks::All;
-  // Landmarks that are no longer observed still constrain the window, but must not take the budget of observed ones.
-  std::vector<int> landmarks(window.cameras().size(), 0), total(window.cameras().size(), 0);
-  const auto count = [&](const Feature& feature) {
-    for (const auto& [camera, last_seen] : feature.last_seen) {
-      ++total[camera];
-      if (window.alive(feature, camera)) ++landmarks[camera];
-    }
-  };
-  const auto has_room = [&](const Feature& feature) {
-    return std::ranges::any_of(feature.last_seen, [&](const auto& seen) {
-      const std::size_t camera = seen.first;
-      return total[camera] < 2 * config.max_per_camera &&
-             (!window.alive(feature, camera) || landmarks[camera] < config.max_per_camera);
-    });
-  };
+  LandmarkBudget budget(window.cameras().size(), config.max_per_camera);
   std::vector<std::map<FeatureId, Feature>::const_iterator> candidates;
   for (auto entry = window.features().begin(); entry != window.features().end(); ++entry) {
     const Feature& feature = entry->second;
     if (feature.anchor) {
-      count(feature);
+      budget.add(window, feature);
     } else if (ended_too || window.alive(feature)) {
       candidates.push_back(entry);
     }
   }
   std::ranges::stable_sort(candidates, std::ranges::greater(),
                            [](const auto& entry) { return entry->second.observations.size(); });
+  std::vector<std::pair<FeatureId, NewAnchor>> found;
+  std::vector<int> behind(window.cameras().size(), 0);
   for (const auto& candidate : candidates) {
     const auto& [id, feature] = *candidate;
-    if (!has_room(feature)) continue;
-    triangulate_feature(window, id, feature, config);
-    if (feature.anchor) count(feature);
+    if (!budget.has_room(window, feature)) continue;
+    const auto point = triangulate_feature(window, feature, config);
+    if (!point) continue;
+    if (point->side == Side::Behind) {
+      ++behind[point->anchor.key.camera];
+    } else {
+      found.emplace_back(id, point->anchor);
+      budget.add(window, feature);
+    }
+  }
+  for (const auto& [id, anchor] : found) {
+    const std::size_t camera = anchor.key.camera;
+    const int before = ended_too ? budget.all(camera) : budget.observed(camera);
+    if (shows_translation(before, behind[camera])) window.make_landmark(id, anchor);
   }
 }
 

@@ -110,6 +110,19 @@ TEST(TriangulateFeatures, WaitsForParallax) {
   EXPECT_EQ(count_landmarks(window), 0);
 }
 
+TEST(TriangulateFeatures, TakesErrorsOfTracksInATurnInPlaceForNoParallax) {
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    TestWorld world({.speed = 0.0, .pixel_noise = 3.0, .seed = seed});
+    Window window = window_at_truth(world);
+    triangulate_features(window, kGenerous);
+    EXPECT_EQ(count_landmarks(window), 0) << seed;
+    TestWorld moves({.pixel_noise = 3.0, .seed = seed});
+    Window with_parallax = window_at_truth(moves);
+    triangulate_features(with_parallax, kGenerous);
+    EXPECT_GT(count_landmarks(with_parallax), 30) << seed;
+  }
+}
+
 TEST(TriangulateFeatures, KeepsTheBudgetOfEachCameraAndPrefersTheLongestTracks) {
   TestWorld world({.cameras = 2, .pixel_noise = 0.0});
   Window window = window_at_truth(world);
