@@ -7,7 +7,10 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "common/cli.hpp"
 #include "common/text.hpp"
 #include "program/commands.hpp"
 #include "program/program.hpp"
@@ -26,9 +29,9 @@ constexpr const char* kFooter =
     "  130 interrupted by Ctrl-C (143 by SIGTERM, 129 by SIGHUP) with complete files.\n"
     "With --json an error is {\"error\": {\"kind\", \"exit_code\", \"message\"}} on stdout, beside the line on "
     "stderr.\n"
-    "See `edged COMMAND --help`.";
+    "See `edged help COMMAND`.";
 
-/// Descriptions of options in a column of their own that ends at the width of a terminal.
+/// Descriptions of options and commands in a column of their own that ends at the width of a terminal.
 class WrappedHelp : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool positional) const override {
@@ -37,7 +40,21 @@ class WrappedHelp : public CLI::Formatter {
       text += edged::wrapped(line, get_column_width()) + '\n';
     return text;
   }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return edged::wrapped(CLI::Formatter::make_subcommand(command), get_column_width());
+  }
 };
+
+/// The command line; `help COMMAND` as `COMMAND --help`.
+std::vector<char*> words_of(int argc, char** argv) {
+  static char flag[] = "--help";
+  std::vector<char*> words(argv, argv + argc);
+  if (words.size() > 1 && words[1] == std::string_view("help")) {
+    words.erase(words.begin() + 1);
+    words.push_back(flag);
+  }
+  return words;
+}
 
 }  // namespace
 
@@ -54,5 +71,10 @@ int main(int argc, char** argv) {
         add_config_command, add_ros2_command, add_play_command, add_manual_command})
     add(app, chosen);
   app.footer(kFooter);  // last, as commands take it over
-  return run_program(app, argc, argv, [&] { return chosen(); });
+  if (argc < 2) {
+    fmt::print("{}", app.help());
+    return kExitUsage;
+  }
+  std::vector<char*> words = words_of(argc, argv);
+  return run_program(app, static_cast<int>(words.size()), words.data(), [&] { return chosen(); });
 }

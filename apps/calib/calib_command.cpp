@@ -246,9 +246,10 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "Show a calibration: both directions of each transform, field of view, clock, IMU noise, suspicious values");
   CLI::Option* file = calib->add_option("FILE", options->file,
                                         "Calibration file or folder (format found by content), or the name of a rig");
-  calib->add_option("--imu", options->imu,
-                    "Kalibr imu yaml: noise densities for a calibration without them. With --check: IMU samples from a "
-                    "csv or txt, as of `edged run`");
+  calib->add_option(
+      "--imu", options->imu,
+      "Kalibr imu yaml: noise densities for a calibration without them. With --check or --target: IMU samples from a "
+      "csv or txt, as of `edged run`");
   CLI::Option* sees =
       calib
           ->add_option(

@@ -31,7 +31,12 @@ void print_result(bool as_json, const nlohmann::ordered_json& json, const std::s
 
 std::string did_you_mean(const std::vector<std::string>& known, const std::string& word) {
   const std::size_t most_edits = std::max<std::size_t>(2, word.size() / 4);
-  const std::string nearest = nearest_name(known, word, most_edits);
+  std::string nearest = nearest_name(known, word, most_edits);
+  const auto begins_alike = [&](const std::string& name) {
+    return std::min(name.size(), word.size()) > 2 && (word.starts_with(name) || name.starts_with(word));
+  };
+  if (const auto name = std::ranges::find_if(known, begins_alike); nearest.empty() && name != known.end())
+    nearest = *name;
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
 }
 

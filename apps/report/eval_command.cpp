@@ -36,10 +36,10 @@ struct EvalOptions {
 void refuse_times(const EvalOptions& options, const CLI::App& eval) {
   std::string timed =
       chosen_protocol(options.how).window == TimeWindow{} ? "" : "--protocol " + options.how.protocol_name;
-  for (const char* name : {"--window", "--first", "--max-gap", "--delta"})
+  for (const char* name : {"--window", "--first", "--max-gap", "--match", "--delta"})
     if (eval.count(name) > 0) timed = name;
   if (!timed.empty())
-    throw InputError::format("{} is in seconds, and KITTI files hold no times; give files with stamps (TUM, EuRoC csv)",
+    throw InputError::format("{} needs times, and KITTI files hold no times; give files with stamps (TUM, EuRoC csv)",
                              timed);
 }
 
@@ -77,8 +77,8 @@ void warn_of_other_order(const ReadFile& truth, const ReadFile& estimate, const 
   const auto try_other = [&](const ReadFile& suspect, bool is_truth) {
     if (suspect.form.columns.named) return;
     const Trajectory other = read_trajectory(suspect.file, {false, with_other_scalar(suspect.form.columns)});
-    const Association association = associate(is_truth ? other : truth.poses, is_truth ? estimate.poses : other,
-                                              duration_from_seconds(options.how.max_gap_s));
+    const Association association =
+        associate(is_truth ? other : truth.poses, is_truth ? estimate.poses : other, options.how);
     const double error_deg = evaluate(association, chosen_protocol(options.how), {}, {}).rotation_deg.rmse;
     if (error_deg < kMuchBetter * rotation_deg)
       spdlog::warn(
@@ -100,10 +100,9 @@ Compared compare(const ReadFile& truth, const ReadFile& estimate, const EvalOpti
     refuse_times(options, eval);
     return {evaluate_untimed(truth.poses, estimate.poses, options), std::nullopt};
   }
-  const Duration max_gap = duration_from_seconds(options.how.max_gap_s);
   Compared compared{
-      evaluate(associate(truth.poses, estimate.poses, max_gap), chosen_protocol(options.how), options.deltas_s),
-      fit_time_offset(truth.poses, estimate.poses, max_gap)};
+      evaluate(associate(truth.poses, estimate.poses, options.how), chosen_protocol(options.how), options.deltas_s),
+      fit_time_offset(truth.poses, estimate.poses, duration_from_seconds(options.how.max_gap_s))};
   warn_of_other_order(truth, estimate, options, compared.evaluation.rotation_deg.rmse);
   return compared;
 }

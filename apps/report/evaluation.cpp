@@ -63,6 +63,17 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
   command.add_option("--max-gap", options.max_gap_s, "Longest gap of the ground truth that is interpolated [s]")
       ->check(positive_number())
       ->capture_default_str();
+  command
+      .add_option("--match", options.match,
+                  "Pairs of poses at the stamps of the sparser trajectory: the denser one interpolated, or its nearest "
+                  "pose within 10 ms (as evo does), which adds the motion between the two")
+      ->check(CLI::IsMember({"interpolate", "nearest"}))
+      ->capture_default_str();
+}
+
+Association associate(const Trajectory& truth, const Trajectory& estimate, const EvaluationOptions& options) {
+  return associate(truth, estimate, duration_from_seconds(options.max_gap_s),
+                   options.match == "nearest" ? Matching::Nearest : Matching::Interpolate);
 }
 
 Protocol chosen_protocol(const EvaluationOptions& options) {

@@ -17,12 +17,15 @@ struct EvaluationOptions {
   double first_s = 0.0;
   std::string protocol_name;
   double max_gap_s = kDefaultMaxGap_s;
+  std::string match = "interpolate";
 };
 
-/// Adds --align, --window, --first, --protocol and --max-gap.
+/// Adds --align, --window, --first, --protocol, --max-gap and --match.
 void add_evaluation_options(CLI::App& command, EvaluationOptions& options);
 
 Protocol chosen_protocol(const EvaluationOptions& options);
+/// Pairs of both, by --max-gap and --match.
+Association associate(const Trajectory& truth, const Trajectory& estimate, const EvaluationOptions& options);
 
 std::string to_table(const Evaluation& evaluation);
 /// "1.23 mm", from 10 cm on "0.123 m".

@@ -150,7 +150,16 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   return run;
 }
 
-/// Poses of another program, for the sensor of the run's ground truth. With that run's calibration.
+/// Whether the comments at its beginning say so.
+bool written_by_edged(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  while (std::getline(in, line) && line.starts_with('#'))
+    if (line.starts_with("# edged ")) return true;
+  return false;
+}
+
+/// Poses without a run folder, for the sensor of the run's ground truth. With that run's calibration.
 LoadedRun load_file(const fs::path& file, const LoadedRun* beside, const ReportOptions& options) {
   LoadedRun run{file, {}, {}, {}, {}, std::nullopt, std::nullopt, std::nullopt, {}};
   const OutputFrame frame(beside ? rig_of(*beside) : Rig{}, beside ? beside->poses.frame : "body");
@@ -281,6 +290,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, const Shares& most) {
   Json json = {{"name", name.string()},
                {"folder", run.path.string()},
                {"is_file", !run.given.has_value()},
+               {"by_edged", run.given.has_value() || written_by_edged(run.path)},
                {"metrics", run.metrics},
                {"frame", run.poses.frame},
                {"origin_ns", to_ns(origin)},

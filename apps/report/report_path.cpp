@@ -71,7 +71,7 @@ AlignedPath align_with_truth(const CausalPoses& poses, const std::vector<StateCo
   path.rotation_deg = path.error_m;
   if (!truth || path.body.empty()) return path;
   try {
-    const Association association = associate(truth->trajectory, path.shown, duration_from_seconds(how.max_gap_s));
+    const Association association = associate(truth->trajectory, path.shown, how);
     path.evaluation = evaluate(association, chosen_protocol(how));
     path.alignment = path.evaluation->alignment;
     add_truth(path, *truth, frame, association);

@@ -204,12 +204,16 @@ TEST_F(Report, NoNameBreaksOutOfItsScript) {
 
 TEST_F(Report, ShowsRunsAndTrajectoryFilesSideBySide) {
   const fs::path a = make_run("a", true), b = make_run("b", false);
-  const nlohmann::json runs = report_data({a, b, a / "trajectory.tum"})["runs"];
-  ASSERT_EQ(runs.size(), 3u);
+  const fs::path own = a / "own.tum";
+  std::ofstream(own) << "# edged 0.2.0, recording r, mode fused\n" << std::ifstream(a / "trajectory.tum").rdbuf();
+  const nlohmann::json runs = report_data({a, b, a / "trajectory.tum", own})["runs"];
+  ASSERT_EQ(runs.size(), 4u);
+  EXPECT_TRUE(runs[3]["is_file"] && runs[3]["by_edged"]);
   EXPECT_EQ(runs[0]["name"], "a");
   EXPECT_EQ(runs[1]["rows"]["t"], runs[0]["rows"]["t"]);
   EXPECT_TRUE(runs[1]["evaluation"].is_null());
-  // A file of another program is compared with the truth of the runs beside it.
+  EXPECT_TRUE(runs[2]["is_file"] && !runs[2]["by_edged"]);
+  // It is compared with the truth of the runs beside it.
   EXPECT_TRUE(runs[2]["metrics"].is_null());
   EXPECT_NEAR(runs[2]["evaluation"]["ate_rmse_m"].get<double>(), runs[0]["metrics"]["ate_rmse_m"].get<double>(), 1e-9);
 }

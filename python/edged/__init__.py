@@ -50,19 +50,36 @@ for _class in (Calibration, Camera, CameraStep, FinalTrajectory, InputError, Loo
     _class.__module__ = __name__
 
 
-def _rows(dtype, **columns):
+def _column(name, values, field, rows):
+    """The values of a field for that many rows, None: for one. Nothing is cut, wrapped or repeated."""
+    values = _numpy.asarray(values)
+    wanted = (*(() if rows is None else (rows,)), *field.shape)
+    if values.shape != wanted:
+        raise ValueError(f"{name}: its shape is {values.shape}; {wanted} is wanted, as t has {'one stamp' if rows is None else f'{rows} stamps'}")
+    if field.base.kind == "u" and values.size:
+        bounds = _numpy.iinfo(field.base)
+        if not _numpy.issubdtype(values.dtype, _numpy.integer):
+            raise TypeError(f"{name}: dtype is {values.dtype}; whole pixels are wanted: round or cast them first")
+        if values.min() < 0 or values.max() > bounds.max:
+            raise ValueError(f"{name}: holds {values.min() if values.min() < 0 else values.max()}; pixels are from 0 to {bounds.max}")
+    return values
+
+
+def _rows(dtype, t, **columns):
     """An array of that dtype from a column a field; a field that is not given is zero."""
-    t = _numpy.atleast_1d(columns["t"])
+    t = _numpy.asarray(t)
     if not _numpy.issubdtype(t.dtype, _numpy.integer):
         raise TypeError(f"t: dtype is {t.dtype}; whole nanoseconds are wanted, as a float holds today's stamps to 256 ns")
-    rows = _numpy.zeros(len(t), dtype)
+    rows = _numpy.zeros(t.size, dtype)
+    rows["t"] = _column("t", t, dtype["t"], t.size if t.ndim else None)
     for name, column in columns.items():
-        rows[name] = column
+        rows[name] = _column(name, column, dtype[name], t.size if t.ndim else None)
     return rows
 
 
 def make_events(t, x, y, p):
-    """An array of EVENT from columns: stamps [ns], columns and rows of pixels, and whether it became brighter."""
+    """An array of EVENT from columns of one length: stamps [ns], columns and rows of pixels (whole numbers within 16 bits), and whether
+    it became brighter (p > 0). ValueError, TypeError where a column does not fit: nothing is cut, wrapped or repeated."""
     return _rows(EVENT, t=t, x=x, y=y, p=_numpy.asarray(p) > 0)
 
 

@@ -55,7 +55,8 @@ struct PyMeasurement {
 struct PyOdometry {
   PyOdometry(const Calibration& calibration, Mode mode, const OdometryConfig& config, const SensorDelays& delays);
   /// Throws InputError if the calibration has no camera of that name and kind; one that the mode leaves out is fine.
-  void check_camera(const std::string& name, Modality modality) const;
+  /// InputError where the calibration has no such camera.
+  const RigCamera& camera(const std::string& name, Modality modality) const;
   const Rig rig;  ///< cameras of the calibration
   std::mutex mutex;
   Odometry odometry;

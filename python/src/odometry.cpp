@@ -41,7 +41,7 @@ std::unique_ptr<PyOdometry> make_odometry(const py::object& calibration, const s
 }
 
 void add_events(PyOdometry& self, std::string camera, const py::array& events) {
-  self.check_camera(camera, Modality::Events);
+  self.camera(camera, Modality::Events);
   check_events(events);
   const void* const data = events.data();
   const auto size = static_cast<std::size_t>(events.size());
@@ -50,8 +50,11 @@ void add_events(PyOdometry& self, std::string camera, const py::array& events) {
 }
 
 void add_frame(PyOdometry& self, std::string camera, Timestamp t, const py::array& image) {
-  self.check_camera(camera, Modality::Frames);
+  const CameraModel& model = self.camera(camera, Modality::Frames).model;
   check_image(image);
+  if (image.shape(1) != model.width() || image.shape(0) != model.height())
+    throw py::value_error(fmt::format("image: has {} x {} pixels, width x height; camera {} has {} x {}",
+                                      image.shape(1), image.shape(0), camera, model.width(), model.height()));
   // A view of the caller's memory: Odometry::add copies the pixels of an image that does not own them.
   const cv::Mat pixels(static_cast<int>(image.shape(0)), static_cast<int>(image.shape(1)), CV_8UC1,
                        const_cast<void*>(image.data()));
@@ -184,11 +187,11 @@ PyOdometry::PyOdometry(const Calibration& calibration, Mode mode, const Odometry
                        const SensorDelays& delays)
     : rig(calibration.rig), odometry(calibration.rig, calibration.imu, mode, config, {delays}) {}
 
-void PyOdometry::check_camera(const std::string& name, Modality modality) const {
+const RigCamera& PyOdometry::camera(const std::string& name, Modality modality) const {
   std::vector<std::string> names;
   for (const RigCamera& camera : rig.cameras) {
     if (camera.modality != modality) continue;
-    if (camera.name == name) return;
+    if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
   throw InputError::format("add_{}: no camera '{}'; of {} the calibration has: {}",

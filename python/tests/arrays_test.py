@@ -44,6 +44,7 @@ def test_images_of_another_kind_are_refused(odometry):
     assert "uint8" in refusal(TypeError, odometry.add_frame, "frames", 0, image.astype(np.float32))
     assert "grey" in refusal(ValueError, odometry.add_frame, "frames", 0, np.zeros((180, 240, 3), np.uint8))
     assert "contiguous" in refusal(ValueError, odometry.add_frame, "frames", 0, image[:, ::2])
+    assert "240 x 90 pixels, width x height; camera frames has 240 x 180" in refusal(ValueError, odometry.add_frame, "frames", 0, image[:90])
     odometry.add_frame("frames", np.int64(5), image)
 
 
@@ -60,6 +61,17 @@ def test_stamps_that_are_no_whole_numbers_are_refused(odometry):
     assert "nanoseconds" in refusal(TypeError, edged.make_events, [0.5], [1], [1], [1])
     with pytest.raises(TypeError):
         odometry.add_frame("frames", 0.5, np.zeros((180, 240), np.uint8))
+
+
+def test_columns_that_do_not_fit_are_refused():
+    assert "x: holds -1" in refusal(ValueError, edged.make_events, [1, 2], [-1, 5], [0, 0], [1, 1])
+    assert "y: holds 65536" in refusal(ValueError, edged.make_events, [1], [1], [65536], [1])
+    assert "x: dtype is float64; whole pixels" in refusal(TypeError, edged.make_events, [1], [1.7], [0], [1])
+    assert "y: its shape is (); (2,) is wanted, as t has 2 stamps" in refusal(ValueError, edged.make_events, [1, 2], [1, 2], 7, [1, 1])
+    assert "p: its shape is (1,)" in refusal(ValueError, edged.make_events, [1, 2], [1, 2], [1, 2], [1])
+    assert "gyro: its shape is (3,); (2, 3)" in refusal(ValueError, edged.make_imu, [1, 2], [0, 0, 0], np.zeros((2, 3)))
+    assert len(edged.make_events(np.zeros(0, np.int64), np.zeros(0, int), np.zeros(0, int), [])) == 0
+    assert edged.make_events(5, 3, 2, 1).shape == (1,)
 
 
 def test_arrays_that_have_been_joined_or_picked_from_fit_as_they_are(odometry):

@@ -33,6 +33,12 @@ class CommandLine(WithFolder):
             described = [line for line in text.split("\n\nExample")[0].splitlines() if line.startswith(" " * 30)]
             self.assertLessEqual(max([len(line) for line in described if " " in line.strip()], default=0), 80, words)
 
+    def test_alone_and_by_help_it_says_what_it_can_do(self):
+        commands = edged("--help").stdout
+        self.assertEqual((edged().stdout, edged("help").stdout, edged("help").returncode), (commands, commands, 0))
+        self.assertEqual(edged("help", "map", "info").stdout, edged("map", "info", "--help").stdout)
+        self.assertLessEqual(max(map(len, commands.split("\n\nA first minute")[0].splitlines())), 80)
+
     def test_every_preset_is_described(self):
         help_text = edged("simulate", "--help").stdout
         names = edged("simulate", "--preset", "nothing").stderr.split("{")[1].split("}")[0].split(",")
@@ -48,6 +54,7 @@ class CommandLine(WithFolder):
         self.assert_refused(edged("rnu", "x"), "unknown command 'rnu'", "did you mean 'run'?", "`edged --help`", code=2)
         self.assert_refused(edged("run", "x", "--mdoe", "fused"), "unknown flag '--mdoe'", "'--mode'", "`edged run --help`", code=2)
         self.assert_refused(edged("run", "x", "--mdoe=fused"), "unknown flag '--mdoe'", "'--mode'", code=2)
+        self.assert_refused(edged("calibrate"), "did you mean 'calib'?", code=2)
         self.assertNotIn("did you mean", edged("hover").stderr)
         self.assertNotIn("did you mean", edged("config", "--what").stderr)
 

@@ -92,7 +92,7 @@ function facts(run) {
 
 function verdictCard(run, i) {
   const m = run.metrics;
-  const [says, ink] = run.is_file ? ['A trajectory file of another program.', 'initializing']
+  const [says, ink] = run.is_file ? [run.by_edged ? 'A trajectory of edged; its run folder shows more.' : 'A trajectory of another program.', 'initializing']
     : !m ? ['It ended before it could write its numbers; what it wrote until then is here.', 'lost']
     : [m.verdict || m.status, inkOf(m)];
   const card = make('article', {class: 'card verdict'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), fullName(run)),

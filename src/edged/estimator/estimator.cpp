@@ -174,14 +174,14 @@ bool Estimator::stationary_by_vision() const {
 std::optional<FlowVelocity> Estimator::turning_in_place(const EstimatorInput& input) const {
   if (!initialized_ || input.t - supported_at_ < kEstimatorTuning.turning_after) return std::nullopt;
   std::optional<FlowVelocity> flow = flow_velocity(window_, depth_m_);
-  if (!flow) return std::nullopt;
-  flow->sigma = std::max(kEstimatorTuning.turning_sigma, flow->sigma);
   const std::optional<KnownMotion> known = known_motion(input);
-  const bool plausible =
-      known && known->speed < std::max(kEstimatorTuning.max_standstill_speed,
-                                       flow->v_O.norm() + kEstimatorTuning.consistent_sigma *
-                                                              std::hypot(known->speed_sigma, flow->sigma));
-  return plausible ? flow : std::nullopt;
+  if (!flow || !known) return std::nullopt;
+  // The gyroscope's bias turns all rays alike.
+  flow->sigma = std::max(kEstimatorTuning.turning_sigma, std::hypot(flow->sigma, depth_m_ * known->rate_sigma));
+  const double sigma = std::hypot(known->speed_sigma, flow->sigma);
+  const double most =
+      std::max(kEstimatorTuning.max_standstill_speed, flow->v_O.norm() + kEstimatorTuning.consistent_sigma * sigma);
+  return known->speed < most ? flow : std::nullopt;
 }
 
 /// The motion predicted to the input by the IMU; its uncertainty is that of the newest state and of the IMU since.

@@ -3,11 +3,15 @@
 #include "edged/eval/association.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 
 #include "edged/core/check.hpp"
 
 namespace edged {
 namespace {
+
+constexpr Duration kMaxDifference = std::chrono::milliseconds(10);  ///< of the stamps of a nearest pose
 
 void require_ascending(const Trajectory& trajectory, const char* what) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
@@ -22,6 +26,20 @@ std::size_t count_outside(const Trajectory& truth, const Trajectory& estimate) {
   return static_cast<std::size_t>(std::ranges::count_if(estimate, [&truth](const StampedPose& pose) {
     return truth.empty() || pose.t < truth.front().t || pose.t > truth.back().t;
   }));
+}
+
+/// after: the first pose that is not before t, or their number.
+std::optional<SE3> pose_at(const Trajectory& dense, std::size_t after, Timestamp t, Duration max_gap,
+                           Matching matching) {
+  const StampedPose* const before = after > 0 ? &dense[after - 1] : nullptr;
+  const StampedPose* const next = after < dense.size() ? &dense[after] : nullptr;
+  if (next && next->t == t) return next->T;
+  if (matching == Matching::Nearest) {
+    const StampedPose* const nearest = before && (!next || t - before->t < next->t - t) ? before : next;
+    return nearest && std::chrono::abs(nearest->t - t) <= kMaxDifference ? std::optional(nearest->T) : std::nullopt;
+  }
+  const bool between = before && next && next->t - before->t <= max_gap;
+  return between ? std::optional(interpolated(*before, *next, t)) : std::nullopt;
 }
 
 }  // namespace
@@ -42,7 +60,7 @@ SE3 interpolated(const StampedPose& before, const StampedPose& after, Timestamp 
           (1.0 - a) * before.T.translation() + a * after.T.translation()};
 }
 
-Association associate(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
+Association associate(const Trajectory& truth, const Trajectory& estimate, Duration max_gap, Matching matching) {
   require_ascending(truth, "ground truth");
   require_ascending(estimate, "estimate");
   Association result;
@@ -56,13 +74,10 @@ Association associate(const Trajectory& truth, const Trajectory& estimate, Durat
   std::size_t after = 0;  // first pose of the denser one at or after the stamp
   for (const StampedPose& pose : truth_is_denser ? estimate : truth) {
     while (after < dense.size() && dense[after].t < pose.t) ++after;
-    if (after == dense.size()) break;
-    if (dense[after].t == pose.t) {
-      add(pose, dense[after].T);
-    } else if (after > 0 && dense[after].t - dense[after - 1].t > max_gap) {
+    if (const auto T = pose_at(dense, after, pose.t, max_gap, matching)) {
+      add(pose, *T);
+    } else if (after > 0 && after < dense.size()) {
       ++result.in_gaps;
-    } else if (after > 0) {
-      add(pose, interpolated(dense[after - 1], dense[after], pose.t));
     }
   }
   return result;

@@ -41,6 +41,19 @@ TEST(Association, DoesNotBridgeAGapInTheTruth) {
   EXPECT_EQ(associate(truth, estimate, duration_from_seconds(1.0)).pairs.size(), 3u);
 }
 
+TEST(Association, TakesTheNearestPoseWithinTenMilliseconds) {
+  const Trajectory truth = {pose(1.0, 0.0), pose(1.1, 2.0), pose(1.2, 4.0)};
+  const Trajectory estimate = {pose(1.008, 7.0), pose(1.05, 7.0), pose(1.095, 7.0), pose(1.2, 7.0)};
+  const Association result = associate(truth, estimate, duration_from_seconds(1.0), Matching::Nearest);
+  ASSERT_EQ(result.pairs.size(), 3u);
+  EXPECT_EQ(result.pairs[0].truth.translation().x(), 0.0);
+  EXPECT_EQ(result.pairs[1].truth.translation().x(), 2.0);
+  EXPECT_EQ(result.pairs[2].truth.translation().x(), 4.0);
+  const Association sparse = associate(truth, {pose(1.05, 7.0), pose(1.195, 7.0)}, {}, Matching::Nearest);
+  EXPECT_EQ(sparse.pairs.size(), 1u);
+  EXPECT_EQ(sparse.in_gaps, 1u);
+}
+
 TEST(Association, InterpolatesTheEstimateWhereTheTruthIsSparser) {
   const Trajectory motion = winding_motion(20.0, 100.0);
   for (const std::size_t stride : {100U, 50U, 20U, 3U}) {  // 1, 2, 5, 33 Hz
