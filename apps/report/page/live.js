@@ -5,9 +5,9 @@
 
 const kLiveSays = {
   Good: ['Running, with a good pose.', 'good'],
-  Degraded: ['It runs; its poses are less certain now.', 'degraded'],
-  Lost: ['It has lost its way, and starts again.', 'lost'],
-  Initializing: ['It has not started to estimate yet.', 'initializing'],
+  Degraded: ['Running; its poses are less certain now.', 'degraded'],
+  Lost: ['Tracking is lost; it initializes again.', 'lost'],
+  Initializing: ['Initializing; there is no pose yet.', 'initializing'],
 };
 const kPictures = {frame: 'frame', events: 'events, motion-compensated'};
 
@@ -47,7 +47,7 @@ function liveFacts(run, update) {
     ['position [m]', three(['x', 'y', 'z'], 3)],
     ['velocity [m/s]', three(['vx', 'vy', 'vz'], 2)],
     ['tracks', tracks.join(', ') + ', ' + now('landmarks') + ' landmarks'],
-    ['a packet takes', number(now('processing'), 'ms', 1)],
+    ['processing per packet', number(now('processing'), 'ms', 1)],
     ['latency', number(now('latency'), 'ms', 1)],
     ['event rate', run.live.mode === 'frames' ? null : valueText(now('event_rate')) + ' 1/s'],
     ['scene depth', number(now('depth'), 'm', 2)],
@@ -57,13 +57,13 @@ function liveFacts(run, update) {
     ['first good pose', p.first_good_s === null ? 'not yet' : 'after ' + number(p.first_good_s, 's', 2)],
     ['speed', number(p.real_time_factor, '× real time', 2)],
     ['pose of', run.frame === 'body' ? 'the body (IMU)' : 'camera ' + run.frame],
-    ['left out here', update.left_out === 0 ? null : update.left_out + ' updates: this browser was too slow for them'],
+    ['skipped here', update.left_out === 0 ? null : update.left_out + ' updates: this browser was too slow for them'],
   ];
 }
 
 /** The present state; returns the card and its update function. */
 function liveCard(run) {
-  const says = make('p', {class: 'says', role: 'status'}, 'It begins.'), why = make('p', {}), list = make('dl', {class: 'facts'});
+  const says = make('p', {class: 'says', role: 'status'}, 'Starting.'), why = make('p', {}), list = make('dl', {class: 'facts'});
   const card = make('article', {class: 'card verdict', id: 'live'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(0)}), fullName(run)), says, why, list);
   const say = (text, ink) => {
     if (says.textContent !== text) says.textContent = text;
@@ -103,9 +103,9 @@ async function showReport(say, metrics) {
     if (!answer.ok) throw new Error(answer.statusText);
     const page = new DOMParser().parseFromString(await answer.text(), 'text/html');
     buildPage(JSON.parse(page.getElementById('data').textContent));
-    document.getElementById('footer').textContent += ' The run is over; this page stays, and lies in ' + metrics.folder + '/report.html.';
+    document.getElementById('footer').textContent += ' The run has ended; this page is saved as ' + metrics.folder + '/report.html.';
   } catch (error) {
-    say(metrics.verdict + '; the report lies in ' + metrics.folder + '/report.html.', inkOf(metrics));
+    say(metrics.verdict + '; the report is ' + metrics.folder + '/report.html.', inkOf(metrics));
   }
 }
 
@@ -151,7 +151,7 @@ function watch(run, say, draw) {
     source.close();
   });
   source.addEventListener('error', () => {
-    say('The program does not answer any more; what it said last is below. This page goes on when it does.', 'lost');
+    say('The program does not answer; its last data is below. This page continues when it answers again.', 'lost');
   });
 }
 

@@ -83,8 +83,8 @@ function playerFacts(data) {
   const all = data.pictures.reduce((sum, picture) => sum + picture.events, 0);
   return [
     ['recording', data.recording + ' (' + data.format + ')'],
-    ['sensor', data.sensor.join(' × ') + ' px' + (data.binning > 1 ? ', ' + data.binning + ' × ' + data.binning + ' of them a pixel here' : '')],
-    ['pictures', data.pictures.length + ', ' + each + (data.every > 1 ? ', one of ' + data.every + ' (--max-mb); a piece (--start, --duration) has more' : '')],
+    ['sensor', data.sensor.join(' × ') + ' px' + (data.binning > 1 ? ', ' + data.binning + ' × ' + data.binning + ' pixels summed here' : '')],
+    ['pictures', data.pictures.length + ', ' + each + (data.every > 1 ? ', one of ' + data.every + ' kept (--max-mb); a shorter part (--start, --duration) keeps more' : '')],
     ['events', valueText(all) + ' in them'],
     ['frames', String(data.frames.length || 'none')],
   ];
@@ -135,8 +135,8 @@ function playerCard(data) {
   return make('div', {class: 'card player'},
               make('div', {class: 'shots'}, make('figure', {}, events, eventsCaption), data.frames.length ? make('figure', {}, frame, frameCaption) : null),
               slider, make('div', {class: 'tools'}, button, speedLabel, styleLabel),
-              make('p', {class: 'hint'}, 'Polarity: blue where it grew brighter, red where darker; more events give more ink. ' +
-                   'Keys: blank plays and pauses, comma and full stop go one picture back and on, [ and ] change the speed, p the colours.'));
+              make('p', {class: 'hint'}, 'Polarity: blue where brighter, red where darker; more events give a stronger colour. ' +
+                   'Keys: space plays and pauses, comma and full stop step by one picture, [ and ] change the speed, p the colours.'));
 }
 
 function buildPlayer(data) {
@@ -150,7 +150,7 @@ function buildPlayer(data) {
   time = new TimeGroup(0, last.t);
   section('What the event camera saw', playerCard(data));
   const plots = make('div', {class: 'plots alone'});
-  section('Over time', plots, make('p', {class: 'hint'}, 'A click goes there. Drag zooms, a double click shows all; keys: arrows, + − and Home.'));
+  section('Over time', plots, make('p', {class: 'hint'}, 'A click jumps there. Drag zooms, a double click shows all; keys: arrows, + − and Home.'));
   const rate = data.pictures.map(picture => picture.events / Math.max(1e-6, picture.t - picture.begin));
   new TimePlot(time, {title: 'event rate', unit: '1/s', zero: true, series: [{t: data.pictures.map(picture => picture.begin), y: rate, label: '', colour: 'run0'}]}, plots);
   section('The recording', make('div', {class: 'card'}, facts));

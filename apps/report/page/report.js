@@ -71,7 +71,7 @@ function facts(run) {
   const final = m.final_not_causal;
   if (final && final.ate_rmse_m !== null) list.push(['ATE of the final trajectory', length(final.ate_rmse_m) + ' (not causal)']);
   list.push(['duration', number(m.duration_s, 's', 1)]);
-  list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in all', 1)]);
+  list.push(['losses', m.times_lost === 0 ? 'none' : m.times_lost + ', ' + number(m.seconds_in.Lost, 's in total', 1)]);
   if (m.seconds_in.Degraded > 0) list.push(['less certain', number(m.seconds_in.Degraded, 's (Degraded)', 1)]);
   list.push(['coverage', number(100 * m.coverage, '% of the time Good', 1)]);
   list.push(['first good pose', m.first_good_s === null ? 'never' : 'after ' + number(m.first_good_s, 's', 2)]);
@@ -81,7 +81,7 @@ function facts(run) {
     list.push([sensor + ' samples', n.used + ' of ' + n.samples + ' used, ' + n.rejected + ' rejected, ' + n.late + ' late']);
   if (m.consistency) list.push(['within 3 σ', number(100 * m.consistency.position.within_3_sigma, '% of the positions', 1)]);
   const process = run.stages.find(stage => stage.stage === 'process');
-  if (process) list.push(['a packet takes', number(process.p50_ms, 'ms (median)', 1) + ', ' + number(process.p99_ms, 'ms (99 %)', 1)]);
+  if (process) list.push(['processing per packet', number(process.p50_ms, 'ms (median)', 1) + ', ' + number(process.p99_ms, 'ms (99 %)', 1)]);
   list.push(['speed', number(m.real_time_factor, '× real time', 2) + ', ' + number(m.cpu_s_per_s, 'CPU s per s', 2) + ', ' + number(m.peak_rss_mb, 'MB', 0)]);
   if (m.live) list.push(['latency', number(1e3 * m.live.latency_s.p50, 'ms (median)', 1) + ', ' + number(1e3 * m.live.latency_s.p99, 'ms (99 %)', 1)]);
   list.push(['recording', m.recording + ' (' + m.format + '), ' + m.mode + (m.seed === null ? '' : ', seed ' + m.seed)]);
@@ -93,7 +93,7 @@ function facts(run) {
 function verdictCard(run, i) {
   const m = run.metrics;
   const [says, ink] = run.is_file ? [run.by_edged ? 'A trajectory of edged; its run folder shows more.' : 'A trajectory of another program.', 'initializing']
-    : !m ? ['It ended before it could write its numbers; what it wrote until then is here.', 'lost']
+    : !m ? ['The run ended before it wrote metrics.json; this page shows what it had written.', 'lost']
     : [m.verdict || m.status, inkOf(m)];
   const card = make('article', {class: 'card verdict'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), fullName(run)),
                     make('p', {class: 'says'}, says));
@@ -103,7 +103,7 @@ function verdictCard(run, i) {
       card.append(make('p', {class: 'finding'}, make('b', {}, finding.severity + ': '), finding.text),
                   make('p', {}, '→ ' + finding.remedy));
     }
-    if (m.waiting_for) card.append(make('p', {}, 'What was missing last: ' + m.waiting_for));
+    if (m.waiting_for) card.append(make('p', {}, 'Last waited for: ' + m.waiting_for));
     if (m.next && !m.next.startsWith('open ')) card.append(make('p', {}, 'Next: ', make('code', {}, m.next)));
     for (const [what, count] of Object.entries(m.repairs || {})) card.append(make('p', {}, 'repaired: ' + count + ' × ' + what));
   }
@@ -211,7 +211,7 @@ function drawnText() {
 
 function pathCard() {
   const canvas = make('canvas', {tabindex: '0', role: 'img', id: 'path',
-                                 'aria-label': 'Path in space; arrows turn, with shift move, plus and minus zoom, t looks from above, Home resets'});
+                                 'aria-label': 'Path in space; arrows rotate, with shift move, plus and minus zoom, t looks from above, Home resets'});
   const tools = make('div', {class: 'tools'});
   space = new SpaceView(canvas);
   const scale = make('span', {class: 'scale'}), drawn = make('p', {class: 'hint', id: 'drawn'});
@@ -232,7 +232,7 @@ function pathCard() {
                dense: runs.some(run => run.dense), voxels: runs.some(run => run.voxels), heights: runs.some(run => run.dense), keyframes: runs.some(run => run.rows.keyframe),
                kept: runs.some(run => run.map_keyframes && run.map_keyframes.t), links: runs.some(run => run.live || linksOf(run).length)};
   for (const [key, label] of [['error', 'coloured by error'], ['truth', 'truth (thin, above)'], ['final', 'final path (wide grey)'], ['map', 'map points'], ['dense', 'dense points'], ['voxels', 'occupied voxels'], ['heights', 'coloured by height'], ['whole', 'fit the map'], ['keyframes', 'keyframes'], ['kept', 'keyframes of the map'],
-                              ['links', 'seen again (lines)']]) {
+                              ['links', 'revisits (lines)']]) {
     if (!has[key]) continue;
     const box = make('input', {type: 'checkbox'});
     box.checked = show[key];
@@ -249,8 +249,8 @@ function pathCard() {
                button('Reset', () => { space.home(); space.draw(); }), scale);
   const world = runs.some(run => run.evaluation) ? 'World of the ground truth, z up.' : 'World of the estimate, z up; it begins at the origin.';
   const card = make('div', {class: 'card view'}, canvas, tools, drawn,
-                    make('p', {class: 'hint'}, world + ' Drag turns, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.' +
-                         (has.links ? ' A line leads from where a place was seen again, ' + kLinkedAfter_s + ' s later or more, to where it was seen first.' : '')));
+                    make('p', {class: 'hint'}, world + ' Drag rotates, shift-drag or two fingers move, wheel (after a click) or pinch zooms; the keyboard does the same. The small dot is the start.' +
+                         (has.links ? ' A line joins the two positions from which a place was observed, ' + kLinkedAfter_s + ' s apart or more.' : '')));
   return [card, refresh];
 }
 

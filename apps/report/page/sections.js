@@ -79,13 +79,13 @@ function plotSection() {
   };
   const bar = make('div', {class: 'tools sticky'}, button('+', 'zoom in', () => time.scale(0.5)), button('−', 'zoom out', () => time.scale(2)),
                    button('Whole run', 'show the whole run', () => time.reset()), span);
-  const all = section('Over time', bar, make('p', {class: 'hint'}, 'One cursor for all, and for path and pictures. Drag zooms, a double click shows all; keys: arrows, + − and Home.' + (runs.length === 1 ? ' Shaded: not Good (see below); upright line: found again in the map.' : '')));
+  const all = section('Over time', bar, make('p', {class: 'hint'}, 'One cursor for all plots, the path and the pictures. Drag zooms, a double click shows all; keys: arrows, + − and Home.' + (runs.length === 1 ? ' Shaded: not Good (see below); vertical line: relocalized in the map.' : '')));
   const truth = {truth: true};
   const triple = (parent, names, unit, keys, more) => keys.forEach((key, i) => columnPlot(parent, names[i], unit, key, more));
   const frames = [...new Set(runs.filter(run => !run.is_file).map(run => run.frame === 'body' ? 'the body (IMU)' : 'camera ' + run.frame))].join(', ');
   triple(group('Position' + (frames ? ' of ' + frames : '')), ['x', 'y', 'z'], 'm', ['x', 'y', 'z'], truth);
   triple(group('Orientation of the body (IMU)'), ['roll', 'pitch', 'yaw'], '°', ['roll', 'pitch', 'yaw'], truth);
-  const errors = group('Errors, and how sure the estimate is');
+  const errors = group('Errors and uncertainty');
   columnPlot(errors, 'position error, aligned', 'm', 'error_m', {zero: true, error: true});
   columnPlot(errors, 'rotation error, aligned', '°', 'rotation_error_deg', {zero: true});
   if (runs.some(run => run.live)) triple(errors, ['3 σ of x', '3 σ of y', '3 σ of z'], 'm', ['sigma3_x', 'sigma3_y', 'sigma3_z'], {zero: true});
@@ -95,18 +95,18 @@ function plotSection() {
   const biases = group('Biases of the IMU');
   triple(biases, ['gyro x', 'gyro y', 'gyro z'], 'rad/s', ['bgx', 'bgy', 'bgz']);
   triple(biases, ['accelerometer x', 'accelerometer y', 'accelerometer z'], 'm/s²', ['bax', 'bay', 'baz']);
-  const seen = group('What it sees');
+  const seen = group('Tracks, landmarks and events');
   columnPlot(seen, 'tracks on events', '', 'event_tracks', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'tracks on frames', '', 'frame_tracks', {zero: true, notIn: 'events'});
-  columnPlot(seen, 'health of events: corners that survive an image', '', 'event_track_survival_rate', {zero: true, notIn: 'frames'});
-  columnPlot(seen, 'health of frames: corners that survive an image', '', 'frame_track_survival_rate', {zero: true, notIn: 'events'});
+  columnPlot(seen, 'track survival rate, events', '', 'event_track_survival_rate', {zero: true, notIn: 'frames'});
+  columnPlot(seen, 'track survival rate, frames', '', 'frame_track_survival_rate', {zero: true, notIn: 'events'});
   columnPlot(seen, 'landmarks', '', 'landmarks', {zero: true});
   columnPlot(seen, 'event rate', '1/s', 'event_rate', {zero: true, notIn: 'frames'});
   columnPlot(seen, 'scene depth', 'm', 'depth', {zero: true});
-  const map = group('Map: what is seen again after it has left the window');
+  const map = group('Map: landmarks observed again after they left the window');
   columnPlot(map, 'map matches', '', 'map_matches', {zero: true, dots: true});
-  columnPlot(map, 'back to the oldest keyframe of them', 's', 'map_reach', {zero: true, dots: true});
-  const pace = group('Time that a packet takes');
+  columnPlot(map, 'age of the oldest keyframe matched', 's', 'map_reach', {zero: true, dots: true});
+  const pace = group('Processing time per packet');
   columnPlot(pace, 'processing', 'ms', 'processing', {zero: true});
   columnPlot(pace, 'latency', 'ms', 'latency', {zero: true});
   for (const grid of [...all.querySelectorAll('.plots')]) if (!grid.children.length) grid.previousSibling.remove(), grid.remove();
@@ -154,7 +154,7 @@ function fillTimeline(all) {
       return [cell(span.t.toFixed(2), 'n'), cell(span.length.toFixed(2), 'n'), status, cell(span.reason || '', 'why'), cell(tracks)];
     });
     all.append(make('div', {class: 'card'}, make('h3', {}, make('i', {class: 'swatch', c: runColour(i)}), runName(run)), bar,
-                    table(['from [s]', 'for [s]', 'status', 'why', 'tracks then'], rows)));
+                    table(['from [s]', 'for [s]', 'status', 'why', 'tracks at its start'], rows)));
   });
 }
 
@@ -179,7 +179,7 @@ function matrixText(T) {
 }
 
 function calibrationSection() {
-  const all = section('Calibration, as given and as the run found it');
+  const all = section('Calibration, given and estimated');
   for (const run of runs.filter(each => each.calibration.length)) {
     const rows = run.calibration.map(camera => {
       const found = ((run.metrics && run.metrics.calibration) || []).find(each => each.camera === camera.camera) || {};
@@ -190,8 +190,8 @@ function calibrationSection() {
               cell(camera.before.time_offset_ms.toFixed(3), 'n'), cell(after ? after.time_offset_ms.toFixed(3) + sigma(found.time_offset_sigma_ms, '') : null, 'n')];
     });
     all.append(make('div', {class: 'card'}, make('h3', {}, runName(run)),
-                    table(['camera', 'T_B_C given', 'T_B_C found', 'rotation between', 'clock given [ms]', 'clock found [ms]'], rows),
-                    make('p', {class: 'hint'}, 'T_B_C maps the camera to the body (IMU); t_imu = t_cam + clock. Translation and lens are held as given.')));
+                    table(['camera', 'T_B_C given', 'T_B_C estimated', 'rotation between', 'time offset given [ms]', 'time offset estimated [ms]'], rows),
+                    make('p', {class: 'hint'}, 'T_B_C maps the camera to the body (IMU); t_imu = t_cam + time offset. Translation and lens are as given.')));
   }
 }
 
@@ -201,7 +201,7 @@ function detailsSection() {
     const card = make('div', {class: 'card'}, make('h3', {}, runName(run)));
     if (run.stages.length) {
       const rows = run.stages.map(stage => [cell(stage.stage), ...['count', 'mean_ms', 'p50_ms', 'p95_ms', 'p99_ms', 'max_ms', 'total_s'].map(key => cell(key === 'count' ? stage[key] : stage[key].toFixed(3), 'n'))]);
-      card.append(make('details', {}, make('summary', {}, 'Stages'), table(['stage', 'count', 'mean [ms]', 'median [ms]', '95 % [ms]', '99 % [ms]', 'worst [ms]', 'in all [s]'], rows)));
+      card.append(make('details', {}, make('summary', {}, 'Stages'), table(['stage', 'count', 'mean [ms]', 'median [ms]', '95 % [ms]', '99 % [ms]', 'worst [ms]', 'total [s]'], rows)));
     }
     if (run.log.length) card.append(make('details', {}, make('summary', {}, 'Log'), make('pre', {tabindex: '0'}, run.log.join('\n'))));
     all.append(card);

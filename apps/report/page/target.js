@@ -103,7 +103,7 @@ function buildTargetPage(data) {
   section('Recording', make('div', {class: 'card'},
           make('p', {}, data.target + '. ' + (data.has_imu ? 'Cameras and IMU' : 'Cameras alone') + ', ' + data.states +
                ' instants, ' + data.seconds.toFixed(0) + ' s of computation.'),
-          make('h3', {}, 'What a better recording has'), ...missing.map(line => make('p', {class: 'finding'}, line))));
+          make('h3', {}, 'What a better recording needs'), ...missing.map(line => make('p', {class: 'finding'}, line))));
   for (const camera of data.cameras) cameraSection(camera);
   applyTheme();
 }
