@@ -18,14 +18,14 @@
 namespace {
 
 constexpr const char* kFooter =
-    "A first minute:\n"
+    "First steps:\n"
     "  edged simulate --out /tmp/flight          make a recording with ground truth\n"
     "  edged run /tmp/flight                     estimate its trajectory; prints the error\n"
     "  edged run /tmp/flight --mode events       the same from events and IMU alone\n"
-    "  edged config packets                      options of that part\n"
+    "  edged config packets                      options whose name contains `packets`\n"
     "\n"
-    "Exit codes: 0 ok, 1 a bug of ours, 2 wrong command line, 3 bad recording, calibration or option,\n"
-    "  4 ran, but never got a good pose, 5 ran, but the result is not to be trusted (it says why),\n"
+    "Exit codes: 0 ok, 1 internal error, 2 wrong command line, 3 bad recording, calibration or option,\n"
+    "  4 no good pose, 5 finished, but the result is not to be trusted (the verdict says why),\n"
     "  130 interrupted by Ctrl-C (143 by SIGTERM, 129 by SIGHUP) with complete files.\n"
     "With --json an error is {\"error\": {\"kind\", \"exit_code\", \"message\"}} on stdout, beside the line on "
     "stderr.\n"

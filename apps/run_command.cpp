@@ -73,7 +73,7 @@ int run_with(const RunOptions& given) {
     if (word.find('=') == std::string::npos)
       throw CLI::ValidationError(
           word,
-          fmt::format("is no KEY=VALUE, and a run is of one recording; several are run by a loop of the shell: "
+          fmt::format("is not KEY=VALUE, and a run takes one recording; run several in a loop of the shell: "
                       "for r in {} {}; do edged run \"$r\"; done (the value of a flag follows =, as in --serve=PORT)",
                       shell_word(options.source.recording), shell_word(word)));
   options.config.assignments.insert(options.config.assignments.end(), options.more.begin(), options.more.end());

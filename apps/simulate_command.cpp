@@ -97,7 +97,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("PRESET")
       ->check([](std::string name) { return CLI::IsMember(simulator_presets())(name); }, "")
       ->capture_default_str();
-  simulate->add_option("--seed", options->seed, "Another flight, other noise [1]");
+  simulate->add_option("--seed", options->seed, "Seed of motion, scene and noise [1]");
   simulate->add_option("--duration", options->duration_s, "Length [s] [that of the preset]");
   simulate
       ->add_option("--baseline", options->baseline_m,

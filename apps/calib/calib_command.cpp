@@ -178,8 +178,7 @@ std::vector<CLI::Option*> add_recording_options(CLI::App& calib, CalibOptions& o
   calib
       .add_option(
           "--refine", options.refined,
-          "Runs over these recordings, each from FILE or their own calibration: writes what they found together "
-          "to --out")
+          "Runs over these recordings, each from FILE or their own calibration: writes their joint estimate to --out")
       ->excludes("--check")
       ->type_name("RECORDING");
   return {all.begin() + static_cast<std::ptrdiff_t>(before), all.end()};
@@ -252,13 +251,13 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
       "csv or txt, as of `edged run`");
   CLI::Option* sees =
       calib
-          ->add_option(
-              "--camera", options->cameras,
-              "Modality of a camera, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does not "
-              "tell; NAME=frames:NEW_NAME also renames it; may be repeated")
+          ->add_option("--camera", options->cameras,
+                       "Modality of a camera, as NAME=events, NAME=frames or NAME=both (a DAVIS), where the file does "
+                       "not state it; NAME=frames:NEW_NAME also renames it; may be repeated")
           ->allow_extra_args(false);
-  calib->add_option("--out", options->out,
-                    "Write it as yaml of our own, for --rig and --calib; with --check as the run found it");
+  calib->add_option(
+      "--out", options->out,
+      "Write it in our own yaml format, for --rig and --calib; with --check with the estimates of the run");
   CLI::Option* json = calib->add_flag("--json", options->json, "Print JSON");
   CLI::Option* fresh =
       calib->add_option("--new", options->camera_of_template, "Instead: a commented file to fill in for this camera")

@@ -129,8 +129,8 @@ std::string kalibr_yaml(const RestingImu& imu, const std::vector<SignalNoise>& a
   const std::span all(axes);
   const WorstNoise gyro = worst(all.first(kGyroAxes)), accel = worst(all.subspan(kGyroAxes));
   return fmt::format(
-      "# Of {:.0f} s at rest by the Allan deviation, the worst axis. In motion errors of scale and sampling add to it: "
-      "a\n# run wants some 5 (gyro) and 2.5 (accelerometer) times the noise.\n"
+      "# Of {:.0f} s at rest by the Allan deviation, the worst axis. In motion, errors of scale and sampling add to "
+      "it: for\n# a run use about 5 (gyro) and 2.5 (accelerometer) times the noise.\n"
       "accelerometer_noise_density: {:.3g}  # m/s^2/sqrt(Hz)\n"
       "accelerometer_random_walk: {:.3g}  # m/s^3/sqrt(Hz){}\n"
       "gyroscope_noise_density: {:.3g}  # rad/s/sqrt(Hz)\n"

@@ -180,7 +180,7 @@ int print_target(const CalibOptions& options) {
   const TargetOptions& target = options.target;
   const std::filesystem::path& file = target.print;
   if (target.kind.empty())
-    throw InputError("--print-target: say which with --target checkerboard, aprilgrid or charuco");
+    throw InputError("--print-target: choose the target with --target checkerboard, aprilgrid or charuco");
   const std::string ending = file.extension().string();
   if (ending != ".svg" && ending != ".pdf")
     throw InputError::format("--print-target {}: must end with .svg or .pdf", file.string());

@@ -17,8 +17,8 @@ CLI::Validator number_above(bool zero_too, const char* wanted, const char* type)
             const bool is_number = CLI::detail::lexical_cast(text, value);
             if (is_number && (value > 0.0 || (zero_too && value == 0.0))) return std::string();
             const bool comma = text.find(',') != std::string::npos;
-            return fmt::format("'{}' is no number {}{}", text, wanted,
-                               comma ? "; decimals have a point, and blanks stand between several numbers" : "");
+            return fmt::format("'{}' is not a number {}{}", text, wanted,
+                               comma ? "; use a decimal point, and blanks between several numbers" : "");
           },
           type};
 }

@@ -55,14 +55,13 @@ void check_writable(const std::filesystem::path& file, const char* option, std::
   std::string begin(kind_begins.size(), '\0');
   if (std::ifstream before(file, std::ios::binary); before.read(begin.data(), std::ssize(begin)).gcount() > 0)
     if (begin != kind_begins)
-      throw InputError::format("{}: is there, and nothing that {} replaces; choose another name, or remove it",
+      throw InputError::format("{}: exists, and is not a file that {} replaces; choose another name, or remove it",
                                file.string(), option);
   std::string trial = file.string() + ".XXXXXX";
   const int opened = mkstemp(trial.data());
   if (opened < 0)
-    throw InputError::format(
-        "{}: cannot be written: {}; give {} a file in a folder that is there and may be written to", file.string(),
-        reason(), option);
+    throw InputError::format("{}: cannot be written: {}; give {} a file in an existing folder that you may write to",
+                             file.string(), reason(), option);
   close(opened);
   std::filesystem::remove(trial, ignored);
 }
@@ -70,7 +69,7 @@ void check_writable(const std::filesystem::path& file, const char* option, std::
 void check_empty(const std::filesystem::path& folder, const char* option) {
   std::error_code ignored;
   if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_empty(folder, ignored))
-    throw InputError::format("{} {}: is there already and not empty; choose another, or add --force", option,
+    throw InputError::format("{} {}: exists already and is not empty; choose another, or add --force", option,
                              folder.string());
 }
 

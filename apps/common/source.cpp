@@ -62,7 +62,7 @@ RecordingOptions recording_options(const SourceOptions& options, const std::opti
   if (!options.geometry.empty()) {
     chosen.geometry = parse_geometry(options.geometry);
     if (!chosen.geometry)
-      throw InputError::format("--geometry {}: is no WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
+      throw InputError::format("--geometry {}: is not WIDTHxHEIGHT in pixels, such as 640x480", options.geometry);
   }
   chosen.cameras = options.cameras;
   chosen.all_cameras = options.all_cameras && options.cameras.empty();
@@ -203,7 +203,7 @@ void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wa
     const bool is_wanted = std::ranges::find(wanted, camera.name) != wanted.end() && uses(mode, camera.modality);
     if (!is_wanted || std::ranges::find(recorded, camera.name, &RecordedCamera::name) != recorded.end()) continue;
     throw InputError::format(
-        "{}: has no camera '{}', which the option cameras wants; it has {}; for a bag, --topic {}=NAME assigns its "
+        "{}: has no camera '{}', which the option cameras names; it has {}; for a bag, --topic {}=NAME assigns its "
         "topic",
         source.dataset->info().name, camera.name, recorded_camera_names(source.dataset->info()), camera.name);
   }

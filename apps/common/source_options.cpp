@@ -22,10 +22,9 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
   command.add_option("--time-unit", options.time_unit, "Unit of the timestamps in a plain event file [detected]")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   command
-      .add_option(
-          "--imu-clock-rate", options.imu_clock_rate,
-          "How many times as fast as the other sensors' the IMU's clock runs, as `edged doctor` says: its stamps "
-          "are corrected from the first one on")
+      .add_option("--imu-clock-rate", options.imu_clock_rate,
+                  "Speed of the IMU's clock relative to the other clocks, as `edged doctor` reports: its stamps are "
+                  "corrected from the first one on")
       ->check(CLI::Range(0.1, 10.0));
   command
       .add_option(

@@ -50,8 +50,8 @@ std::string text_of(const DepthModel& m, const std::filesystem::path& file, doub
   return fmt::format(
       "{}: {} ({:.2f} MB)\n{}  input   {} bins over {:.0f} ms of events{}, {}\n"
       "  output  {:.2f} .. {:.0f} m, depth = {} exp(-{} (1 - y)){}\n"
-      "  error   {:.2f} (rms of ln depth, as its makers measured it)\n"
-      "  time    {:.1f} ms of one core a window of a DAVIS240C\nOthers: edged depth fetch\n",
+      "  error   {:.2f} (rms of ln depth, as its authors measured it)\n"
+      "  time    {:.1f} ms of one core per window of a DAVIS240C\nOthers: edged depth fetch\n",
       m.name, file.string(), 1e-6 * size, m.note.empty() ? "" : fmt::format("  {}\n", m.note), m.bins, 1e3 * m.window_s,
       m.shrink > 1 ? fmt::format(", at 1/{} of the resolution", m.shrink) : "",
       m.states.empty() ? "no memory" : "recurrent", m.d_max_m * std::exp(-m.alpha), m.d_max_m, m.d_max_m, m.alpha,
@@ -82,10 +82,10 @@ int explain_fetch() {
       "     (Debian: python3-numpy, python3-onnx; nothing in the checkpoint is executed)\n"
       "  3. edged depth e2depth\n"
       "     edged run RECORDING --set depth.source=fused --set depth.network.model=e2depth\n"
-      "Its depths begin at 2 m and its scale is loose: use it fused, where landmarks give the scale.\n"
+      "Its depths begin at 2 m and its scale is uncertain: use it fused, where landmarks determine the scale.\n"
       "Training a network of your own: tools/depth/train.py, docs/depth_model.md.\n"
       "It is {}.\n",
-      target.string(), std::filesystem::exists(target) ? "there" : "not there yet");
+      target.string(), std::filesystem::exists(target) ? "installed" : "not installed yet");
   return kExitOk;
 }
 

@@ -55,7 +55,7 @@ void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
 }
 
 std::string next_step(const DoctorOptions& options, const Recording& recording, bool ill) {
-  if (ill) return "mend the errors above, then " + command_line("doctor", options.source);
+  if (ill) return "correct the errors above, then " + command_line("doctor", options.source);
   if (!recording.calibration)
     return "edged calib --new CAMERA --out head.yaml, then " + command_line("doctor", options.source) +
            " --calib head.yaml";

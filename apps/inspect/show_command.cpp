@@ -116,10 +116,11 @@ void print_shown(const ShowOptions& options, const Shown& shown, const std::map<
   std::string text = fmt::format("{}: {} of events, {}\n", options.out.string(), quantity(shown.pictures, "picture"),
                                  quantity(shown.frames, "frame"));
   if (shown.every > 1)
-    text += fmt::format("one picture of {}, to stay below {} MB; a piece (--start, --duration) has more of its own\n",
-                        shown.every, options.max_mb);
+    text +=
+        fmt::format("one picture of {} kept, to stay below {} MB; a shorter part (--start, --duration) keeps more\n",
+                    shown.every, options.max_mb);
   if (shown.stopped_after_s)
-    text += fmt::format("stopped there; --max-pictures allows more, --start {:.3f} goes on\n",
+    text += fmt::format("stopped there; --max-pictures allows more, --start {:.3f} continues\n",
                         options.source.piece.from_s + *shown.stopped_after_s);
   print_result(options.json,
                {{"out", options.out.string()},

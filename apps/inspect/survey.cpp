@@ -59,7 +59,8 @@ std::string events_text(const RecordingStatistics& s, const std::string& name) {
   text += survey_line("", fmt::format("{}; pixels up to ({}, {}); {:.0f} % positive; {:.0f} % of the pixels fired",
                                       size_text(s.info.event_sensor), e.extent.width - 1, e.extent.height - 1,
                                       100 * e.positive_share, 100 * e.active_share));
-  text += survey_line("", s.events.gaps == 0 ? "never silent for 0.1 s" : "silences of 0.1 s: " + gap_text(s.events));
+  text += survey_line(
+      "", s.events.gaps == 0 ? "never 0.1 s without events" : "periods of 0.1 s without events: " + gap_text(s.events));
   text += survey_line(
       "", fmt::format("highest rate {}ev/s over 10 ms; share of the time by rate:", si_number(e.peak_rate_hz)));
   text += histogram(e);
@@ -99,7 +100,7 @@ std::string imu_text(const RecordingStatistics& s) {
   text +=
       survey_line("", fmt::format("mean specific force {:.2f} m/s^2, angular speed mean {:.2f}, highest {:.2f} rad/s",
                                   imu.mean_accel, imu.mean_gyro, imu.max_gyro));
-  if (!imu.rest) return text + survey_line("", "never at rest for half a second: no figure for its noise");
+  if (!imu.rest) return text + survey_line("", "never at rest for half a second: no estimate of its noise");
   const ImuRest& rest = *imu.rest;
   text += survey_line(
       "", fmt::format(

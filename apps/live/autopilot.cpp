@@ -53,7 +53,7 @@ class AutopilotOutput : public RunObserver {
     run_.timings.put("autopilot", to_wire_);
     const MavlinkCounters counters = output_.counters();
     const std::string text =
-        fmt::format("{}: {} messages of odometry, {} heartbeats and {} answers to TIMESYNC sent, {} not taken", url_,
+        fmt::format("{}: {} messages of odometry, {} heartbeats and {} answers to TIMESYNC sent, {} not accepted", url_,
                     counters.odometry, counters.heartbeats, counters.timesyncs, counters.dropped);
     spdlog::log(counters.dropped > 0 ? spdlog::level::warn : spdlog::level::info, text);
   }
@@ -84,8 +84,8 @@ RunOutput autopilot_output() {
         if (run.options.outputs.get<AutopilotOptions>().url.empty()) return nullptr;
         if (!run.options.live)
           throw InputError(
-              "--mavlink needs --live: an autopilot takes each pose for the present one, and a run that is faster "
-              "or slower than its recording would mislead it");
+              "--mavlink needs --live: an autopilot treats each pose as the current one, and a run that is faster or "
+              "slower than its recording would give it old ones");
         return std::make_unique<AutopilotOutput>(run);
       }};
 }

@@ -284,7 +284,7 @@ RunOutput live_page_output() {
                 ->check([](const std::string& given) {
                   return parse_serve_address(given)
                              ? ""
-                             : fmt::format("'{}' is no PORT or HOST:PORT, such as --serve=8765", given);
+                             : fmt::format("'{}' is not PORT or HOST:PORT, such as --serve=8765", given);
                 });
           },
           [](RunContext& run) -> std::unique_ptr<RunObserver> {

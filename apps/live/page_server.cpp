@@ -137,9 +137,10 @@ PageServer::PageServer(std::string host) : host_(std::move(host)) {
 bool PageServer::refuses(const httplib::Request& request, httplib::Response& response) const {
   const std::string host = without_port(request.get_header_value("Host"));
   if (request.method != "GET" && request.method != "HEAD") {
-    refuse(response, 405, "This page can only be read.\n");
+    refuse(response, 405, "Only GET requests are answered.\n");
   } else if (host != host_ && host != "localhost" && !is_address(host)) {
-    refuse(response, 403, "Not by this name: open the page by its address, or serve it with --serve=NAME:PORT.\n");
+    refuse(response, 403,
+           "This host name is refused: open the page by its address, or serve it with --serve=NAME:PORT.\n");
   } else {
     return false;
   }

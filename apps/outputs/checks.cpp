@@ -51,7 +51,7 @@ void judge_rig(const Rig& given, const Rig& found, const CalibrationConfig& conf
          fmt::format("cameras {} and {}: their pose to each other is {:.2f} deg and {:.1f} mm off the calibration",
                      first.name, camera.name, turned_deg, moved_mm),
          "the rig may be bent; the run has corrected it; pass calibration_found.yaml of this run with --calib, or "
-         "calibrate anew"});
+         "calibrate again"});
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 std::string keyframes_csv(const std::vector<MappedKeyframe>& keyframes) {
   std::string text =
-      "# keyframes of the map as known in the end: the body (IMU) in the world (z up), stamps on the IMU clock\n"
+      "# keyframes of the map as estimated at the end: the body (IMU) in the world (z up), stamps on the IMU clock\n"
       "t_ns,px_m,py_m,pz_m,qx,qy,qz,qw,camera,points,times_found,found_at_ns\n";
   for (const MappedKeyframe& keyframe : keyframes) {
     const Eigen::Vector3d& p = keyframe.T_W_B.translation();
@@ -61,8 +61,8 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
     }
   }
   const std::vector<std::string> comments = {
-      "points of the map in the world (z up) [m], as known in the end",
-      "keyframe: row of keyframes.csv; tried, found: images in which the point was looked for, found"};
+      "points of the map in the world (z up) [m], as estimated at the end",
+      "keyframe: row of keyframes.csv; tried, found: images in which the point was searched for, found"};
   return ply_header(
              false, comments, count,
              "float x, float y, float z, uchar red, uchar green, uchar blue, int keyframe, int tried, int found") +

@@ -84,15 +84,14 @@ class RunMap : public RunObserver {
     map_ = end.save_map();
     if (map_ && !saved_map_from_bytes(*map_).keyframes.empty()) {
       json["saved"] = options_.save.string();
-      figures.line("map kept", options_.save.string());
+      figures.line("map saved", options_.save.string());
       return;
     }
-    const std::string why =
-        map_ ? "no keyframe has left the window" : "this run has not found its place in that of --map";
+    const std::string why = map_ ? "no keyframe has left the window" : "this run was not relocalized in that of --map";
     spdlog::warn(fmt::format("--save-map {}: not written, as {}", options_.save.string(), why));
     end.summary.verdict.findings.push_back(
         {Severity::Error, fmt::format("map: not saved to {}: {}", options_.save.string(), why),
-         map_ ? "record for longer, and move: a map is of keyframes that were left behind"
+         map_ ? "record for longer, and move: a map consists of keyframes that have left the window"
               : "start where the map of --map was made, or leave --map out"});
     map_.reset();
   }
@@ -107,10 +106,10 @@ class RunMap : public RunObserver {
   void add_loaded_line(Figures& figures) const {
     if (found_)
       figures.line("map", fmt::format("{:.1f} s", to_seconds(*found_ - *first_pose_)),
-                   "from the start until found in " + options_.load.string());
+                   "from the start until relocalized in " + options_.load.string());
     else
-      figures.line("map", "not found",
-                   localize_only() ? "again: there are no poses" : "again: poses are in a frame of their own");
+      figures.line("map", "not relocalized",
+                   localize_only() ? "there are no poses" : "poses are in a frame of their own");
   }
 
   /// Keyframes are matched within one camera.

@@ -85,14 +85,14 @@ void refuse_infinite_numbers(CLI::App& app) {
       option->check([](const std::string& text) {
         double value = 0.0;
         const bool infinite = CLI::detail::lexical_cast(text, value) && !std::isfinite(value);
-        return infinite ? fmt::format("'{}' is no finite number", text) : "";
+        return infinite ? fmt::format("'{}' is not a finite number", text) : "";
       });
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuse_infinite_numbers(*command);
 }
 
 /// A folder without permission, a name that is too long, a full disk: no bugs of ours.
 std::string text_of(const std::filesystem::filesystem_error& error) {
-  return fmt::format("{}: {}; check the path and your rights there", error.path1().string(), error.code().message());
+  return fmt::format("{}: {}; check the path and your permissions", error.path1().string(), error.code().message());
 }
 
 /// Packets of a wide sensor are megabytes, allocated and freed thirty times a second: if returned to the system, it
@@ -139,7 +139,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const std::filesystem::filesystem_error& e) {
     return tell(app, {kExitInput, "input", text_of(e)}, json);
   } catch (const std::system_error& e) {
-    return tell(app, {kExitInput, "input", fmt::format("the system refuses: {}", e.what())}, json);
+    return tell(app, {kExitInput, "input", fmt::format("system error: {}", e.what())}, json);
   } catch (const spdlog::spdlog_ex& e) {
     return tell(app, {kExitInput, "input", fmt::format("{}; is the disk full?", e.what())}, json);
   } catch (const std::exception& e) {
@@ -148,7 +148,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
           app,
           {kExitInput, "input", "there is too little memory: close other programs, or raise the limit (ulimit -v)"},
           json);
-    return tell(app, {kExitBug, "bug", fmt::format("a bug, please report it with this line: {}", e.what())}, json);
+    return tell(app, {kExitBug, "bug", fmt::format("internal error, please report this line: {}", e.what())}, json);
   }
 }
 

@@ -44,7 +44,7 @@ void add_property(PlyHeader& header, const std::string& type, const std::string&
 PlyHeader read_header(const std::filesystem::path& file, std::ifstream& in) {
   PlyHeader header;
   std::string line;
-  if (!std::getline(in, line) || line != "ply") refuse(file, "it is no PLY file");
+  if (!std::getline(in, line) || line != "ply") refuse(file, "it is not a PLY file");
   while (std::getline(in, line) && line != "end_header") {
     std::istringstream words(line);
     std::string what, type, name;

@@ -121,7 +121,7 @@ CausalPoses poses_in_map(const LoadedRun& run, const OutputFrame& frame) {
 
 LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   if (!fs::exists(folder / "states.csv") || !fs::exists(folder / "calibration.yaml")) {
-    throw InputError::format("{}: is no run folder (states.csv, calibration.yaml); give a folder of `edged run`",
+    throw InputError::format("{}: is not a run folder (states.csv, calibration.yaml); give a folder of `edged run`",
                              folder.string());
   }
   LoadedRun run{folder,
@@ -138,7 +138,7 @@ LoadedRun load_folder(const fs::path& folder, const ReportOptions& options) {
   if (!options.truth.empty()) {
     if (run.metrics.is_null()) {
       throw InputError::format(
-          "{}: ended before it wrote metrics.json, which says whose poses these are; run it again, or leave --truth "
+          "{}: ended before it wrote metrics.json, which states whose poses these are; run it again, or leave --truth "
           "out",
           folder.string());
     }

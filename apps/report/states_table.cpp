@@ -162,7 +162,8 @@ StatesTable read_states(const std::filesystem::path& folder) {
   const auto heading = lines.next();
   const std::vector<std::string> names = heading ? heading_fields(heading->text) : std::vector<std::string>();
   if (names.size() < 2 || names[0] != "t_ns" || names[1] != "status") {
-    throw InputError::format("{}: is no states.csv of a run; give the folder that `edged run` left", file.string());
+    throw InputError::format("{}: is not the states.csv of a run; give the folder that `edged run` left",
+                             file.string());
   }
   StatesTable table;
   std::vector<std::vector<double>*> columns;

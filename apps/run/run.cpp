@@ -185,7 +185,7 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   end.summary.live = reader.live_summary(end.counters);
   if (!truth_.problem.empty())
     end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be read: " + truth_.problem,
-                                            "mend or remove the file: the run is compared with nothing"});
+                                            "correct or remove the file: this run is not compared with ground truth"});
   {
     const auto timer = run_.timings.measure("final_trajectory");
     end.final_trajectory = odometry_.final_trajectory();

@@ -98,7 +98,7 @@ void add_archive_option(CLI::App& app, std::string& archive) {
 void check_archive(const std::filesystem::path& file, EarlierRun earlier) {
   std::error_code error;
   if (earlier == EarlierRun::Keep && std::filesystem::is_regular_file(file, error))
-    throw InputError::format("{}: is there already; give another --archive=FILE, or --force to replace it",
+    throw InputError::format("{}: exists already; give another --archive=FILE, or --force to replace it",
                              file.string());
   check_writable(file, "--archive");
 }

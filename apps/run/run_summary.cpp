@@ -256,7 +256,7 @@ void add_dropped(std::map<std::string, std::size_t>& repairs, const OdometryCoun
       {"height or velocity samples dropped as impossible", intake.external_unfit},
       {"events outside the calibration's image dropped", intake.events_outside},
       {"frames of another size than the calibration's dropped", intake.frames_unfit},
-      {"measurements with absurd stamps dropped", intake.absurd_stamps},
+      {"measurements with impossible stamps dropped", intake.absurd_stamps},
       {"measurements with stamps far ahead dropped", intake.far_ahead},
       {"clocks set back: restarted", intake.clocks_set_back},
       {"packets before the first IMU sample dropped", packets.packets_before_imu},

@@ -33,7 +33,7 @@ void judge_calibration(const CalibrationFound& c, std::vector<Finding>& out) {
     out.push_back({severity,
                    fmt::format("camera {}: its rotation to the IMU is {:.2f} deg +- {:.2f} deg off the calibration",
                                c.camera, c.rotation_deg, *c.rotation_sigma_deg),
-                   done + "; calibrate camera and IMU anew"});
+                   done + "; calibrate camera and IMU again"});
   // In dim light the pixels of an event camera answer late: an estimate takes that for its clock, rightly.
   const bool latency = c.events && shift_ms < 0.0 && shift_ms > -kMostLatency_ms;
   if (c.time_sigma_ms && !latency && std::abs(shift_ms) > std::max(kLeast_ms, kSigmas * *c.time_sigma_ms))
@@ -66,8 +66,8 @@ void judge_lens_and_position(const CalibrationFound& c, std::vector<Finding>& ou
   if (list.empty()) return;
   out.push_back(
       {Severity::Warning, fmt::format("camera {}: differs from the calibration by {}", c.camera, list),
-       corrected ? "the run has corrected it; pass calibration_found.yaml of this run with --calib, or calibrate anew"
-                 : "more than a run can correct: choose the calibration of this lens, or calibrate it anew"});
+       corrected ? "the run has corrected it; pass calibration_found.yaml of this run with --calib, or calibrate again"
+                 : "more than a run can correct: choose the calibration of this lens, or calibrate it again"});
 }
 
 /// Inconsistencies appear in the biases first.
@@ -87,7 +87,7 @@ void judge_scale(const RunStatistics& run, double max_sigma, std::vector<Finding
                    fmt::format("scale: known to {:.0f} %, as the motion is too gentle for this IMU: distances may be "
                                "off by that share",
                                100.0 * *run.scale_sigma()),
-                   "move faster, use a second camera of known distance, or a height or velocity sensor"});
+                   "move faster, use a second camera of known baseline, or a height or velocity sensor"});
 }
 
 /// With --localize-only a loss is silence: no pose depends on dead reckoning. explained: by a cause that is named.
@@ -170,8 +170,8 @@ void judge_no_start(const RunStatistics& statistics, const SourceOptions& source
     }
   }
   verdict.next = command_line("doctor", source);
-  const std::string why = statistics.packets() == 0     ? "not one packet had IMU samples around it"
-                          : verdict.waiting_for.empty() ? "no start was tried"
+  const std::string why = statistics.packets() == 0     ? "no packet had IMU samples before and after it"
+                          : verdict.waiting_for.empty() ? "no initialization was tried"
                                                         : "it waited for " + verdict.waiting_for;
   const std::optional<double> tilt_deg = statistics.tilt_sigma_deg();
   const std::string attitude =

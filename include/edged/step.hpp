@@ -49,10 +49,10 @@ struct CameraStep {
   std::span<const Event> rendered_events() const { return std::span(events).last(rendered); }
 };
 
-/// The body is at a place of long ago: the drift since then is corrected, and the pose jumps.
+/// The body is at a place that was mapped long before: the drift since then is corrected, and the pose jumps.
 struct LoopClosure {
   Timestamp keyframe;       ///< it shows the place, IMU clock
-  double position_m = 0.0;  ///< the pose was off by that
+  double position_m = 0.0;  ///< size of the correction
   double rotation_rad = 0.0;
 };
 
@@ -62,7 +62,7 @@ struct Step {
   TrackingStatus status = TrackingStatus::Initializing;
   NavState state;                             ///< at t; meaningful unless status is Initializing
   std::optional<StateCovariance> covariance;  ///< that of `state`, at most 0.1 s old; nothing before the start
-  std::optional<Attitude> attitude;           ///< at t, while Initializing: pure rotation tells no position
+  std::optional<Attitude> attitude;           ///< at t, while Initializing: pure rotation gives no position
   bool keyframe = false;                      ///< this packet became a keyframe
   /// The body was found in the map after a loss, or in a loaded map. The pose jumps to its place in the map, and the
   /// reference of the covariance with it.

@@ -55,11 +55,11 @@ def _column(name, values, field, rows):
     values = _numpy.asarray(values)
     wanted = (*(() if rows is None else (rows,)), *field.shape)
     if values.shape != wanted:
-        raise ValueError(f"{name}: its shape is {values.shape}; {wanted} is wanted, as t has {'one stamp' if rows is None else f'{rows} stamps'}")
+        raise ValueError(f"{name}: its shape is {values.shape}; give {wanted}, as t has {'one stamp' if rows is None else f'{rows} stamps'}")
     if field.base.kind == "u" and values.size:
         bounds = _numpy.iinfo(field.base)
         if not _numpy.issubdtype(values.dtype, _numpy.integer):
-            raise TypeError(f"{name}: dtype is {values.dtype}; whole pixels are wanted: round or cast them first")
+            raise TypeError(f"{name}: dtype is {values.dtype}; give whole pixels: round or cast them first")
         if values.min() < 0 or values.max() > bounds.max:
             raise ValueError(f"{name}: holds {values.min() if values.min() < 0 else values.max()}; pixels are from 0 to {bounds.max}")
     return values
@@ -69,7 +69,7 @@ def _rows(dtype, t, **columns):
     """An array of that dtype from a column a field; a field that is not given is zero."""
     t = _numpy.asarray(t)
     if not _numpy.issubdtype(t.dtype, _numpy.integer):
-        raise TypeError(f"t: dtype is {t.dtype}; whole nanoseconds are wanted, as a float holds today's stamps to 256 ns")
+        raise TypeError(f"t: dtype is {t.dtype}; give whole nanoseconds, as a float holds today's stamps to 256 ns")
     rows = _numpy.zeros(t.size, dtype)
     rows["t"] = _column("t", t, dtype["t"], t.size if t.ndim else None)
     for name, column in columns.items():

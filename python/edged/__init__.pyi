@@ -112,13 +112,13 @@ class CameraStep:
 
 
 class LoopClosure:
-    """The body is at a place of long ago: the drift since then is corrected, and the pose jumps."""
+    """The body is at a place that was mapped long before: the drift since then is corrected, and the pose jumps."""
     @property
     def keyframe(self) -> int:
         """Stamp of the keyframe that shows the place [ns], IMU clock."""
     @property
     def position_m(self) -> float:
-        """The pose was off by that."""
+        """Size of the correction."""
     @property
     def rotation_rad(self) -> float: ...
 

@@ -57,7 +57,7 @@ struct PoseRow {
 static_assert(sizeof(PoseRow) == 64);
 
 void check_rows(const py::array& array, const char* what) {
-  if (array.ndim() != 1) throw py::value_error(fmt::format("{}: has {} dimensions, one is wanted", what, array.ndim()));
+  if (array.ndim() != 1) throw py::value_error(fmt::format("{}: has {} dimensions, must have one", what, array.ndim()));
   if (array.shape(0) > 1 && array.strides(0) != array.itemsize())
     throw py::value_error(fmt::format("{}: is not contiguous; numpy.ascontiguousarray makes a copy that is", what));
 }
@@ -135,20 +135,19 @@ void check_events(const py::array& events) {
   static const py::dtype& with_numbers =
       kept(make_dtype({{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"p", "u1", 12}}, sizeof(Event)));
   if (!events.dtype().equal(with_numbers))
-    check_dtype(events, dtype_of<Event>(), "events",
-                "wanted is edged.EVENT: edged.make_events or .astype(edged.EVENT)");
+    check_dtype(events, dtype_of<Event>(), "events", "must be edged.EVENT: edged.make_events or .astype(edged.EVENT)");
   check_rows(events, "events");
 }
 
 void check_imu(const py::array& samples) {
-  check_dtype(samples, dtype_of<ImuSample>(), "imu", "wanted is edged.IMU: edged.make_imu(t, gyro, accel)");
+  check_dtype(samples, dtype_of<ImuSample>(), "imu", "must be edged.IMU: edged.make_imu(t, gyro, accel)");
   check_rows(samples, "imu");
 }
 
 void check_image(const py::array& image) {
-  check_dtype(image, py::dtype::of<std::uint8_t>(), "image", "wanted is uint8");
+  check_dtype(image, py::dtype::of<std::uint8_t>(), "image", "must be uint8");
   if (image.ndim() != 2)
-    throw py::value_error(fmt::format("image: has {} dimensions; wanted is grey, height x width", image.ndim()));
+    throw py::value_error(fmt::format("image: has {} dimensions; must be grey, height x width", image.ndim()));
   if ((image.flags() & py::array::c_style) == 0)
     throw py::value_error("image: is not contiguous; numpy.ascontiguousarray makes a copy that is");
 }
@@ -186,7 +185,7 @@ py::array poses_array(const Trajectory& trajectory) {
 }
 
 Trajectory trajectory_of(const py::array& poses) {
-  check_dtype(poses, pose_dtype(), "poses", "wanted is edged.POSE: edged.make_poses(t, position, quaternion)");
+  check_dtype(poses, pose_dtype(), "poses", "must be edged.POSE: edged.make_poses(t, position, quaternion)");
   check_rows(poses, "poses");
   Trajectory trajectory;
   for (py::ssize_t i = 0; i < poses.shape(0); ++i) {
@@ -195,7 +194,7 @@ Trajectory trajectory_of(const py::array& poses) {
     const auto& [x, y, z, w] = row.quaternion;
     const Eigen::Quaterniond q(w, x, y, z);
     if (!(std::abs(q.norm() - 1.0) < 1e-3))
-      throw py::value_error(fmt::format("poses: quaternion {} is no rotation (x, y, z, w of norm 1 are wanted)", i));
+      throw py::value_error(fmt::format("poses: quaternion {} is not a rotation (x, y, z, w of norm 1)", i));
     trajectory.push_back({timestamp_from_ns(row.t), SE3(q, Eigen::Vector3d(row.position))});
   }
   return trajectory;

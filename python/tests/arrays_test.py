@@ -66,10 +66,10 @@ def test_stamps_that_are_no_whole_numbers_are_refused(odometry):
 def test_columns_that_do_not_fit_are_refused():
     assert "x: holds -1" in refusal(ValueError, edged.make_events, [1, 2], [-1, 5], [0, 0], [1, 1])
     assert "y: holds 65536" in refusal(ValueError, edged.make_events, [1], [1], [65536], [1])
-    assert "x: dtype is float64; whole pixels" in refusal(TypeError, edged.make_events, [1], [1.7], [0], [1])
-    assert "y: its shape is (); (2,) is wanted, as t has 2 stamps" in refusal(ValueError, edged.make_events, [1, 2], [1, 2], 7, [1, 1])
+    assert "x: dtype is float64; give whole pixels" in refusal(TypeError, edged.make_events, [1], [1.7], [0], [1])
+    assert "y: its shape is (); give (2,), as t has 2 stamps" in refusal(ValueError, edged.make_events, [1, 2], [1, 2], 7, [1, 1])
     assert "p: its shape is (1,)" in refusal(ValueError, edged.make_events, [1, 2], [1, 2], [1, 2], [1])
-    assert "gyro: its shape is (3,); (2, 3)" in refusal(ValueError, edged.make_imu, [1, 2], [0, 0, 0], np.zeros((2, 3)))
+    assert "gyro: its shape is (3,); give (2, 3)" in refusal(ValueError, edged.make_imu, [1, 2], [0, 0, 0], np.zeros((2, 3)))
     assert len(edged.make_events(np.zeros(0, np.int64), np.zeros(0, int), np.zeros(0, int), [])) == 0
     assert edged.make_events(5, 3, 2, 1).shape == (1,)
 

@@ -156,7 +156,7 @@ void print_sent(const ros2::PlayCounters& counters) {
 }
 
 int run_play(const PlayOptions& options) {
-  if (!options.ros2) throw InputError("say where to play to: --ros2");
+  if (!options.ros2) throw InputError("no destination; add --ros2");
   SourceOptions source = options.source;
   source.all_cameras = true;
   Recording recording = open_uncalibrated(source);
@@ -208,7 +208,7 @@ void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
       "  edged ros2 --rig davis240c_ecd -r events:=/event_camera/events -r image:=/camera/image_raw -r imu:=/imu/data\n"
       "  edged ros2 --ros-args -p rig:=head.yaml -p base_frame:=base_link -r imu:=/imu/data\n"
       "  edged ros2 --rig head.yaml --mode events --set packets.max_interval_s=0.03 --namespace /drone\n"
-      "Ctrl-C ends it with the counters of what came, and exit code 0.");
+      "Ctrl-C ends it with the counters of what was received, and exit code 0.");
   ros2->callback([options, &chosen] { chosen = [options] { return run_ros2(*options); }; });
 }
 
@@ -220,9 +220,10 @@ void add_play_command(CLI::App& app, std::function<int()>& chosen) {
   play->add_flag("--ros2", options->ros2, "To ROS 2: the only choice so far");
   add_ros2_place(*play, options->place, "edged_play");
   play->add_option("--rate", options->rate, "Speed; 2 is twice as fast as recorded")->check(CLI::Range(0.01, 1000.0));
-  play->add_flag("--best-effort", options->best_effort, "Offer best effort, as drivers do; lost messages stay lost");
-  play->add_flag("--wait", options->wait, "Begin when the first subscriber has come");
-  play->add_flag("--loop", options->loop, "Again and again; the clock jumps back");
+  play->add_flag("--best-effort", options->best_effort,
+                 "Offer best effort, as drivers do; lost messages are not sent again");
+  play->add_flag("--wait", options->wait, "Start when the first subscriber is there");
+  play->add_flag("--loop", options->loop, "Repeat without end; the clock jumps back");
   const std::string footer =
       "Topics: events (EventPacket), image, imu, height (FluidPressure), velocity (TwistWithCovarianceStamped), "
       "/clock;\n"

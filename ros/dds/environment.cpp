@@ -48,7 +48,7 @@ std::vector<std::string> peers_of(const std::string& text) {
   std::istringstream list(text);
   for (std::string peer; std::getline(list, peer, ';');) {
     if (peer.find_first_of("<>\"&") != std::string::npos)
-      throw InputError::format("ROS_STATIC_PEERS: '{}' is no address", peer);
+      throw InputError::format("ROS_STATIC_PEERS: '{}' is not an address", peer);
     if (!peer.empty()) peers.push_back(peer);
   }
   return peers;

@@ -60,7 +60,7 @@ void check_topic(const std::string& name, const std::string& remapping) {
   } else if (rest.starts_with('/')) {
     rest.remove_prefix(1);
   }
-  if (!is_name(rest)) throw InputError::format("remapping '{}': '{}' is no name of a topic", remapping, name);
+  if (!is_name(rest)) throw InputError::format("remapping '{}': '{}' is not the name of a topic", remapping, name);
 }
 
 }  // namespace
@@ -110,9 +110,9 @@ Names::Names(std::string name_space, std::string node, const std::vector<std::st
   }
   if (!name_space_.starts_with('/')) name_space_.insert(name_space_.begin(), '/');
   if (name_space_ != "/" && !is_name(std::string_view(name_space_).substr(1)))
-    throw InputError::format("'{}' is no namespace: use letters, digits and underscores", name_space_);
+    throw InputError::format("'{}' is not a namespace: use letters, digits and underscores", name_space_);
   if (!is_name(node_) || node_.find('/') != std::string::npos)
-    throw InputError::format("'{}' is no name of a node: use letters, digits and underscores", node_);
+    throw InputError::format("'{}' is not the name of a node: use letters, digits and underscores", node_);
   for (const auto& [from, to] : topics) remapped_.emplace(expand(from), expand(to));
 }
 

@@ -115,8 +115,8 @@ std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
     const std::string policy = writer->refused_policy();
     if (!policy.empty() && said_.insert(topic).second)
       spdlog::warn(
-          fmt::format("{}: a subscriber gets nothing, as it asks for more than is offered ({}): let it ask for "
-                      "the default of ROS 2",
+          fmt::format("{}: a subscriber receives nothing, as its QoS requests more than is offered ({}): give it the "
+                      "default QoS of ROS 2",
                       topic, policy));
   }
   std::map<std::string, node::TopicTroubles> troubles;
@@ -125,7 +125,7 @@ std::map<std::string, node::TopicTroubles> Ros2Transport::troubles() const {
   if (clock_ && !clock_runs_) {
     const std::string trouble = clock_->trouble();
     troubles[clock_->topic()].trouble =
-        trouble.empty() ? "nothing has come: start the simulator, or leave use_sim_time out" : trouble;
+        trouble.empty() ? "nothing was received: start the simulator, or leave use_sim_time out" : trouble;
   }
   return troubles;
 }

@@ -133,7 +133,7 @@ std::string Subscription::trouble() const {
     if (policy == "reliability")
       return "a publisher is best effort, and reliable=true asks for more: leave it at false";
     if (!policy.empty())
-      return fmt::format("a publisher's QoS does not fit ({}): let it offer the default of ROS 2", policy);
+      return fmt::format("a publisher's QoS does not fit ({}): give it the default QoS of ROS 2", policy);
   }
   if (accepted == 0 && wrong != present_.end())
     return fmt::format("a publisher sends {}, which cannot be used here: remap the topic", wrong->second);

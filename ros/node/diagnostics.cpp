@@ -24,7 +24,7 @@ std::string summary(const NodeHealth& health) {
   if (!health.reason.empty()) text += ": " + health.reason;
   for (const auto& [topic, input] : health.inputs) {
     if (input.messages == 0 && !input.optional && input.transport_trouble.empty())
-      text += fmt::format("; nothing has come on {}", topic);
+      text += fmt::format("; nothing received on {}", topic);
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
     if (!input.transport_trouble.empty()) text += fmt::format("; {}: {}", topic, input.transport_trouble);
   }
@@ -78,7 +78,7 @@ std::vector<Count> counts_of(const NodeHealth& health) {
                             {"frames left out, too slow", health.dropped.frames, true},
                             {"of an unknown camera", intake.unknown_camera, true},
                             {"of a camera not used", intake.unused_camera, false},
-                            {"absurd stamps", intake.absurd_stamps, true},
+                            {"impossible stamps", intake.absurd_stamps, true},
                             {"stamps far ahead", intake.far_ahead, true},
                             {"clocks set back", intake.clocks_set_back, true},
                             {"events outside the image", intake.events_outside, true},

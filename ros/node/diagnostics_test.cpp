@@ -49,7 +49,7 @@ TEST(Diagnostics, ANodeThatIsTooSlowWarnsOfTheShareOfEventsThatItDrops) {
 TEST(Diagnostics, ASilentTopicIsNamed) {
   NodeHealth health = good();
   health.inputs["/dvs/events"];
-  EXPECT_THAT(diagnose(health).message, HasSubstr("nothing has come on /dvs/events"));
+  EXPECT_THAT(diagnose(health).message, HasSubstr("nothing received on /dvs/events"));
 }
 
 TEST(Diagnostics, ATopicThatCannotComeIsNamedWithTheReason) {

@@ -55,8 +55,8 @@ void ImuRateOutputs::keep(const ImuSample& sample) {
   const Duration back = recent_.empty() ? Duration(0) : recent_.back().t - sample.t;
   if (back > kRecentImu) {
     spdlog::warn(
-        fmt::format("the clock of the IMU has jumped back by {:.1f} s: the estimate starts anew once all "
-                    "sensors have followed",
+        fmt::format("the clock of the IMU has jumped back by {:.1f} s: the estimate starts again once the clocks of "
+                    "all sensors have jumped back",
                     to_seconds(back)));
     recent_.clear();
   }

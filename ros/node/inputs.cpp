@@ -20,7 +20,7 @@ void Inputs::subscribe(const std::string& topic, Role role, const std::string& c
   const auto [entry, is_new] = inputs_.try_emplace(name, transport_.wire(), role, camera);
   SensorInput& input = entry->second;
   if (!is_new)
-    throw InputError::format("{} is to be both {} and {}: remap one of them", name, input.sensor(),
+    throw InputError::format("{} is used for both {} and {}: remap one of them", name, input.sensor(),
                              sensor_text(role, camera));
   if (!clocks_) clocks_.emplace(name);  // the first camera's
   transport_.subscribe(name, role, [this, name, &input](const WireMessage& message) {

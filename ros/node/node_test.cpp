@@ -29,7 +29,7 @@ TEST(Node, TwoSensorsOnOneTopicAreRefused) {
   KeptTransport transport(Wire::Cdr);
   transport.remapped = {{"imu", "/all"}, {"velocity", "/all"}};
   EXPECT_THAT([&] { Node(davis_config(), load_node_rig(davis_config()), transport); },
-              ThrowsMessage<InputError>("/all is to be both imu and velocity: remap one of them"));
+              ThrowsMessage<InputError>("/all is used for both imu and velocity: remap one of them"));
 }
 
 TEST(Node, AMapThatCannotBeUsedIsRefused) {

@@ -40,7 +40,7 @@ std::vector<std::string> troubles_of(const std::string& topic, const InputCounte
     all.push_back(fmt::format("{}: the clock of {} was set by {:+.3f} s: {}", topic,
                               step.of_stamps ? "the stamps" : "the sensor",
                               to_seconds(step.of_stamps ? step.stamps_by : -step.stamps_by),
-                              step.of_stamps ? "the estimate goes on" : "it is aligned anew"));
+                              step.of_stamps ? "the estimate continues" : "it is aligned again"));
   if (input.stamp_jitter > kMostJitter)
     all.push_back(topic + ": stamps of the messages are those of their arrival; the clock of the sensor is used");
   return all;

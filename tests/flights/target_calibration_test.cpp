@@ -127,7 +127,7 @@ TEST(RigFit, SaysAboutWhichAxisItHardlyTurned) {
     fit_rig(views.cameras, views.layout, views.imu, {});
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("camera cam0: it hardly turned about its"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("camera cam0: it hardly rotated about its"), std::string::npos) << e.what();
   }
 }
 

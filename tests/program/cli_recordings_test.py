@@ -70,7 +70,7 @@ class Recordings(WithFlight):
         self.assertEqual(result.returncode, 0, result.stdout)
         self.assertIn("0 errors, 0 warnings", result.stdout)
         for camera in ("events", "frames"):
-            self.assertRegex(result.stdout, rf"camera {camera}: t_imu = t_cam .* by its turning")
+            self.assertRegex(result.stdout, rf"camera {camera}: t_imu = t_cam .* from its rotation rate")
             self.assertRegex(result.stdout, rf"camera {camera}: its rotation agrees with the gyro to [0-3]\.")
 
     def test_the_doctor_names_wrong_units_with_the_remedy(self):
@@ -100,7 +100,7 @@ class Recordings(WithFlight):
                            for t, *v in (line.split() for line in text.splitlines()))
         result = edged("doctor", self.changed("imu.txt", negated))
         self.assertEqual(result.returncode, 3)
-        self.assertRegex(result.stdout, r"error +camera frames: the gyro turns the other way.*\n.*sign")
+        self.assertRegex(result.stdout, r"error +camera frames: the gyro rotates the other way.*\n.*sign")
 
     def test_the_doctor_counts_everything_that_it_prints(self):
         lines = (self.flight / "imu.txt").read_text().splitlines()
@@ -162,7 +162,7 @@ class Recordings(WithFlight):
             back = self.folder / (name + "_back")
             self.assertEqual(edged("convert", target, back, "--format", "ecd", "--quiet").returncode, 0)
             self.assertEqual((back / "events.txt").read_text(), (self.flight / "events.txt").read_text())
-            self.assert_refused(edged("convert", self.flight, target, "--quiet"), "is there already")
+            self.assert_refused(edged("convert", self.flight, target, "--quiet"), "exists already")
 
     def test_a_converted_recording_gives_the_same_run_to_the_last_bit(self):
         calib = ("--calib", self.flight / "calibration.yaml")

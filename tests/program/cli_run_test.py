@@ -74,7 +74,7 @@ class Run(WithFlight):
     def test_a_number_that_is_not_finite_is_refused(self):
         for flags in (["--duration", "inf"], ["--occupancy", "x", "--occupancy-voxel", "nan"], ["--export", "x", "--export-hz=nan"],
                       ["--occupancy", "x", "--occupancy-heights", "0", "inf"]):
-            self.assert_refused(edged("run", self.flight, *flags), "is no finite number", code=2)
+            self.assert_refused(edged("run", self.flight, *flags), "is not a finite number", code=2)
 
     def test_a_simulation_takes_options_of_the_simulator(self):
         run = edged("run", "sim:room:3:duration_s=2,frames.rate_hz=10", "--json", "--quiet", "--out", self.folder / "run")
@@ -284,10 +284,10 @@ class Run(WithFlight):
         for file in (there, self.folder / "there.zip.part", self.folder / "run.zip"):
             file.write_text("of somebody")
         piece = ("run", self.flight, "--duration", 0.3, "--quiet", "--out", out)
-        self.assert_refused(edged(*piece, f"--archive={there}"), str(there), "is there already", "--force")
+        self.assert_refused(edged(*piece, f"--archive={there}"), str(there), "exists already", "--force")
         self.assert_refused(edged(*piece, f"--archive={self.folder}"), "is a folder")
         self.assert_refused(edged(*piece, f"--archive={self.folder}/none/a.zip"), "none/a.zip: cannot be written")
-        self.assert_refused(edged(*piece, "--archive"), f"{out}.zip", "is there already")
+        self.assert_refused(edged(*piece, "--archive"), f"{out}.zip", "exists already")
         self.assertEqual(there.read_text(), "of somebody")
         self.assertFalse(out.exists())
         edged(*piece, f"--archive={there}", "--force")

@@ -29,7 +29,7 @@ class CommandLine(WithFolder):
             self.assertNotIn("ENUM", text, words)
             self.assertNotIn("->", text, words)
             self.assertNotIn("--dim-frames", text, "for experiments")
-            self.assertNotIn("A first minute", text, words)
+            self.assertNotIn("First steps", text, words)
             described = [line for line in text.split("\n\nExample")[0].splitlines() if line.startswith(" " * 30)]
             self.assertLessEqual(max([len(line) for line in described if " " in line.strip()], default=0), 80, words)
 

@@ -146,7 +146,7 @@ def repeats(which, seconds):
     return rf"IMU samples that repeat a reading: {which} for ({lengths}) s from {{at}}\d+ s"
 
 
-LENS, MOUNTING = "it turns like the gyro only through another lens:", "rotation|mounted|off the calibration"
+LENS, MOUNTING = "it agrees with the gyro only with another lens:", "rotation (to|of)|mounted|off the calibration"
 ONE_AT = r"the first at {at}\d+ s"
 ROWS = {
     "clean": Row({}, "none", run=0),
@@ -164,13 +164,13 @@ ROWS = {
     "one_sample_of_1e4_m_s2": Row(one_reading(1, 1e4), "warning", "1 IMU samples beyond what .*: " + ONE_AT, "driver or the cable"),
     "one_sample_of_1e300": Row(one_reading(4, 1e300), "warning", "1 IMU samples beyond what .*: " + ONE_AT, "driver or the cable", run=0),
     "spikes": Row(imu(spikes), "warning", r"(3\d|40) IMU samples far from both neighbours: the first at \d", "driver or the cable", run=0),
-    "bursts_of_3": Row(bursts(3), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample", run=0),
-    "bursts_of_5": Row(bursts(5), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample"),
-    "bursts_of_20": Row(bursts(20), "warning", r"\d+ IMU samples of one stamp, spread evenly", "stamp each sample", run=0),
+    "bursts_of_3": Row(bursts(3), "warning", r"\d+ IMU samples with equal stamps, spread evenly", "stamp each sample", run=0),
+    "bursts_of_5": Row(bursts(5), "warning", r"\d+ IMU samples with equal stamps, spread evenly", "stamp each sample"),
+    "bursts_of_20": Row(bursts(20), "warning", r"\d+ IMU samples with equal stamps, spread evenly", "stamp each sample", run=0),
     "imu_late": Row(imu(lambda rows, _: [[row[0] + 0.15, *row[1:]] for row in rows]), "error",
-                    r"camera frames: t_imu = t_cam \+15\d\.\d ms", r"set time_offset of this camera to 0\.15", doctor=3, run=5, never="rotation|truth"),
+                    r"camera frames: t_imu = t_cam \+15\d\.\d ms", r"set time_offset of this camera to 0\.15", doctor=3, run=5, never="rotation (to|of)|truth"),
     "accelerometer_turned": Row(imu(lambda rows, _: [[row[0], -row[2], row[1], *row[3:]] for row in rows]), "error",
-                                "accelerometer: gravity does not turn in its axes", r"\(y, -x, z\) would fit", doctor=3, run=5),
+                                "accelerometer: gravity does not rotate in its axes", r"\(y, -x, z\) would fit", doctor=3, run=5),
     "accelerometer_4_percent": Row(imu(lambda rows, _: [[row[0], *(1.04 * v for v in row[1:4]), *row[4:]] for row in rows]), "warning",
                                    r"accelerometer: it reads 10\.\d\d m/s\^2 at rest", "calibrate it at rest in six attitudes"),
     "noise_too_large": Row(calibration(r"((?:gyro|accel)_noise: )(\S+)", lambda n: 1000 * n), "error",
@@ -184,15 +184,15 @@ ROWS = {
     "radtan_as_equidistant": Row({"calibration.yaml": lambda lines: ["".join(lines).replace("radtan", "equidistant").replace(", 0]\n    T", "]\n    T")]},
                                  "error", f"camera frames: {LENS} its coefficients fit as radtan", "calibration of this lens", doctor=3, never=MOUNTING),
     "images_thrice": Row({"images.txt": lambda lines: [f"{float(t) + k:.6f} {name}\n" for t, name in map(str.split, lines)
-                                                       for k in (0, 0.01, 0.02)]}, "warning", r"6\d % of the frames repeat the image before", "leave the repeated ones out", run=0),
-    "truth_frozen": Row(truth(frozen), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0, never="covariance"),
-    "truth_flipped": Row(truth(flipped), "warning", r"ground truth: 2 jumps, the first at 3\.500 s by 0\.2\d m and 180 deg", "leave the wrong poses out", run=0),
-    "truth_zero": Row(truth(zero), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "leave the wrong poses out", run=0),
-    "truth_in_millimetres": Row(truth(millimetres), "warning", r"ground truth: 2 jumps, the first at {at}", "leave the wrong poses out", run=0),
+                                                       for k in (0, 0.01, 0.02)]}, "warning", r"6\d % of the frames repeat the image before", "remove the repeated ones", run=0),
+    "truth_frozen": Row(truth(frozen), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "remove the wrong poses", run=0, never="covariance"),
+    "truth_flipped": Row(truth(flipped), "warning", r"ground truth: 2 jumps, the first at 3\.500 s by 0\.2\d m and 180 deg", "remove the wrong poses", run=0),
+    "truth_zero": Row(truth(zero), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "remove the wrong poses", run=0),
+    "truth_in_millimetres": Row(truth(millimetres), "warning", r"ground truth: 2 jumps, the first at {at}", "remove the wrong poses", run=0),
     "events_halved": Row(events(lambda x, y: (x // 2, y // 2)), "error", "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, run=5, never="frames:", mode="fused"),
-    "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "events: they lie on the edges of the frames only if turned by 180 deg", "driver or the converter", doctor=3, run=5, mode="fused"),
-    "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "events: they lie on the edges of the frames only if mirrored left to right", "driver or the converter", doctor=3, run=5, mode="fused"),
-    "imu_reversed": Row(imu(lambda rows, _: rows[::-1]), "refused", "imu.txt:.* stamp goes back in time", "mend or replace the file", doctor=3, run=3),
+    "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "events: they match the edges of the frames only if turned by 180 deg", "driver or the converter", doctor=3, run=5, mode="fused"),
+    "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "events: they match the edges of the frames only if mirrored left to right", "driver or the converter", doctor=3, run=5, mode="fused"),
+    "imu_reversed": Row(imu(lambda rows, _: rows[::-1]), "refused", "imu.txt:.* stamp goes back in time", "repair or replace the file", doctor=3, run=3),
     "all_silent_200_ms": Row(silence(0.2), "warning", r"1 IMU gaps of 0\.20\d s together, .* at {at}", "USB bus", run=0),
     "all_silent_500_ms": Row(silence(0.49), "warning", r"1 IMU gaps of 0\.49\d s together, .* at {at}", "USB bus"),
     "all_silent_900_ms": Row(silence(0.9), "error", r"1 IMU gaps of 0\.90\d s together, .* at {at}", "USB bus", doctor=3, run=5),
@@ -201,11 +201,11 @@ ROWS = {
 
 ROWS_OF_TWO = {
     "two_clean": Row({}, "none", run=0),
-    "two_exchanged": Row(exchanged("images", "images2"), "error", "cameras frames and frames2: their images match only as if exchanged", "exchange their topics", doctor=3, run=5,
+    "two_exchanged": Row(exchanged("images", "images2"), "error", "cameras frames and frames2: their images match only if exchanged", "exchange their topics", doctor=3, run=5,
                          never="rig|differs|covariance"),
     "two_clean_by_events": Row({"events.txt": "events.txt", "events2.txt": "events2.txt"}, "none", run=0, mode="events"),
     "two_exchanged_by_events": Row({"events.txt": "events2.txt", "events2.txt": "events.txt"}, "error",
-                                   "cameras events and events2: their images match only as if exchanged", "exchange their topics", doctor=3, run=5,
+                                   "cameras events and events2: their images match only if exchanged", "exchange their topics", doctor=3, run=5,
                                    never="rig|differs|covariance", mode="events"),
 }
 

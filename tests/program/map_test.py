@@ -92,7 +92,7 @@ class Maps(WithFlight):
         poster = self.folder / "poster.map"
         result = edged("run", "sim:poster:3", "--duration", "8", "--mode", "frames", "--map", self.map, "--save-map", poster, "--out",
                        self.folder / "run", "--quiet")
-        self.assertRegex(result.stdout, "map +not found")
+        self.assertRegex(result.stdout, "map +not relocalized")
         self.assertEqual(result.returncode, 5, result.stdout)
         self.assertRegex(result.stdout, r"error +map: never matched in ")
         self.assertIn("not written", result.stderr)
@@ -121,7 +121,7 @@ class Maps(WithFlight):
         self.assert_refused(self.run_in(self.map, "--save-map", nowhere), str(nowhere))
         bag = self.folder / "flight.bag"
         bag.write_bytes(b"#ROSBAG V2.0\n")
-        self.assert_refused(self.run_in(self.map, "--save-map", bag), str(bag), "is there")
+        self.assert_refused(self.run_in(self.map, "--save-map", bag), str(bag), "exists")
         self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
         result = edged("run", self.flight, self.flight, "--save-map", damaged, "--quiet")
         self.assertEqual(result.returncode, 2, result.stderr)

@@ -240,7 +240,7 @@ class Lines(WithFlight):
         result = self.run_to(url, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stderr.count("a message was not sent: Connection refused"), 1, result.stderr)
-        self.assertRegex(result.stderr, r"[1-9]\d* not taken")
+        self.assertRegex(result.stderr, r"[1-9]\d* not accepted")
 
     def test_what_cannot_work_is_refused_in_one_line(self):
         self.assert_refused(self.run_to("udp:14550"), "MAVLink", "udp:127.0.0.1:14550")

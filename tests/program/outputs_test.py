@@ -31,7 +31,7 @@ class Outputs(WithFlight):
         bag, pipe, run = self.folder / "flight.bag", self.folder / "pipe", self.folder / "run"
         bag.write_bytes(b"#ROSBAG V2.0\n")
         os.mkfifo(pipe)
-        for place, reason in ((bag, "is there, and nothing that"), (pipe, "pipe")):
+        for place, reason in ((bag, "exists, and is not a file that"), (pipe, "pipe")):
             self.assert_refused(edged("run", self.flight, "--save-map", place, "--out", run, "--quiet"), str(place), reason, "--save-map")
             self.assert_refused(edged("report", self.flight, "--out", place), str(place), reason, "--out")
         self.assertFalse(run.exists())

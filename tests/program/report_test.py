@@ -94,11 +94,11 @@ class Page(WithFlight):
     def test_only_a_page_is_replaced(self):
         bag = self.folder / "flight.bag"
         bag.write_bytes(b"#ROSBAG V2.0\n")
-        self.assert_refused(edged("report", self.run_folder, "--out", bag), str(bag), "is there")
+        self.assert_refused(edged("report", self.run_folder, "--out", bag), str(bag), "exists")
         self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
 
     def test_what_is_no_run_is_refused_in_a_line(self):
-        self.assert_refused(edged("report", self.flight), str(self.flight), "no run folder", "edged run")
+        self.assert_refused(edged("report", self.flight), str(self.flight), "not a run folder", "edged run")
         self.assert_refused(edged("report", self.folder / "none"), "none", "not found")
         self.assert_refused(edged("report", self.run_folder, "--out", self.folder / "no" / "x.html"), "x.html", "--out")
         self.assert_refused(edged("report", self.run_folder, "--truth", self.folder / "none.txt"), "none.txt")

@@ -120,11 +120,11 @@ class Verdict(WithFlight):
 
     def test_imu_axes_that_are_negated(self):
         for fault in ("all axes negated", "one axis negated"):
-            self.assert_not_trusted(fault, "as if it were seen in a mirror|contradicts the gyro", "right-handed|axis")
+            self.assert_not_trusted(fault, "as if its axes were mirrored|contradicts the gyro", "right-handed|axis")
         self.assert_not_trusted("two axes negated", r"contradicts the gyro|off the calibration", "axis|edged calib")
 
     def test_an_accelerometer_with_other_axes_than_the_gyro(self):
-        self.assert_not_trusted("accelerometer's axes", "gravity does not turn in its axes", r"\(-x, y, z\)")
+        self.assert_not_trusted("accelerometer's axes", "gravity does not rotate in its axes", r"\(-x, y, z\)")
 
     def assert_said(self, fault, severity, text, remedy):
         recording = self.changed(*faults.TOLD[fault])
@@ -136,7 +136,7 @@ class Verdict(WithFlight):
                 self.assertRegex(said[0]["remedy"], remedy)
 
     def test_an_accelerometer_of_which_the_sign_alone_is_wrong(self):
-        self.assert_said("accelerometer negated", "error", "accelerometer: camera .* moves against it", "multiply it by -1")
+        self.assert_said("accelerometer negated", "error", "accelerometer: camera .* moves opposite to it", "multiply it by -1")
 
     def test_a_gyro_that_reads_a_tenth_too_much(self):
         self.assert_said("gyro 1.1", "warning", r"the gyro reads (9|10|11)\.\d % .* too much", r"divide the gyro by 1\.(09|1)")

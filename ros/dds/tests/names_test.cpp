@@ -36,9 +36,9 @@ TEST(Ros2Names, AreResolvedInTheNamespaceAndRemapped) {
 TEST(Ros2Names, WhatIsNoNameIsRefused) {
   const auto message = [](const std::string& text) { return ThrowsMessage<InputError>(HasSubstr(text)); };
   EXPECT_THAT([] { Names("/", "edged", {"events"}); }, message("write it as from:=to"));
-  EXPECT_THAT([] { Names("/", "edged", {"events:=/a//b"}); }, message("'/a//b' is no name of a topic"));
-  EXPECT_THAT([] { Names("/", "1st", {}); }, message("'1st' is no name of a node"));
-  EXPECT_THAT([] { Names("/a b", "edged", {}); }, message("'/a b' is no namespace"));
+  EXPECT_THAT([] { Names("/", "edged", {"events:=/a//b"}); }, message("'/a//b' is not the name of a topic"));
+  EXPECT_THAT([] { Names("/", "1st", {}); }, message("'1st' is not the name of a node"));
+  EXPECT_THAT([] { Names("/a b", "edged", {}); }, message("'/a b' is not a namespace"));
 }
 
 }  // namespace

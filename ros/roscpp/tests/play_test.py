@@ -142,7 +142,7 @@ class PlayedMirror(unittest.TestCase):
             self.assertEqual(int(self.counts[f"{topic} messages"]), count)
             self.assertEqual(self.counts[f"{topic} messages unreadable"], "0")
         self.assertEqual(int(self.counts["/dvs/events events"]), self.events)
-        for key in ("no room", "of an unknown camera", "absurd stamps", "events outside the image", "frames unfit",
+        for key in ("no room", "of an unknown camera", "impossible stamps", "events outside the image", "frames unfit",
                     "packets dropped, IMU away too long", "IMU samples not finite", "IMU samples late"):
             self.assertEqual(self.counts[key], "0", key)
 

@@ -17,7 +17,7 @@ void VelocityConfig::visit(ConfigFields& fields) {
   fields.add("enabled", enabled, {.effect = "Use the samples of a velocity sensor."});
   fields.add("sigma_mps", sigma_mps, {"m/s", 1e-3, 100, "Standard deviation of samples without their own."});
   fields.add("scale_sigma", scale_sigma,
-             {"", 0, 1, "Prior uncertainty of its scale, which is estimated along. 0: the scale is taken as exact."});
+             {"", 0, 1, "Prior uncertainty of its scale, which is estimated, too. 0: the scale is taken as exact."});
   fields.add("position_m", position_m,
              {.unit = "m", .effect = "Position of the velocity sensor in the body frame: x y z."});
   fields.add("rotation_deg", rotation_deg,

@@ -17,7 +17,7 @@ constexpr unsigned kGyroAxes = 0b111, kAccelAxes = 0b111000;
 }  // namespace
 
 const ByImuFault<ImuFaultInfo>& imu_fault_infos() {
-  static constexpr const char* kDriver = "look for the cause in the driver or the cable: each is a gap of a run";
+  static constexpr const char* kDriver = "look for the cause in the driver or the cable: each of them leaves a gap";
   static constexpr ByImuFault<ImuFaultInfo> kInfos{{{
       {"imu_not_finite", "not finite", kDriver},
       {"imu_late", "late", "sort the samples by their stamps, and record each once"},
@@ -25,8 +25,9 @@ const ByImuFault<ImuFaultInfo>& imu_fault_infos() {
       {"imu_spikes", "far from both neighbours", kDriver},
       {"imu_repeated", "that repeat a reading", "the driver repeats its last sample, or the sensor stopped: a gap"},
       {"imu_clipped", "at the end of the range", "set the sensor to a larger range: what is beyond is unknown"},
-      {"imu_shared_stamps", "lost, of one stamp", "let the driver stamp each sample"},
-      {"imu_spread", "of one stamp, spread evenly", "let the driver stamp each sample, not each transfer of several"},
+      {"imu_shared_stamps", "dropped, with equal stamps", "let the driver stamp each sample"},
+      {"imu_spread", "with equal stamps, spread evenly",
+       "let the driver stamp each sample, not each transfer of several"},
   }}};
   return kInfos;
 }

@@ -30,7 +30,7 @@ void check_names(const Rig& rig, const std::vector<std::string>& names) {
     if (std::ranges::find(rig.cameras, name, &RigCamera::name) == rig.cameras.end())
       throw InputError::format("option 'cameras': rig '{}' has no '{}'; there are {}", rig.name, name, listed(rig));
     if (std::ranges::count(names, name) > 1)
-      throw InputError::format("option 'cameras': '{}' is there twice; rig '{}' has {}", name, rig.name, listed(rig));
+      throw InputError::format("option 'cameras': '{}' is listed twice; rig '{}' has {}", name, rig.name, listed(rig));
   }
 }
 

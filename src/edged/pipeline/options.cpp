@@ -122,7 +122,7 @@ void OdometryConfig::validate() const {
         ->key;
   });
   if (map.localize_only && !map.enabled)
-    throw InputError("map.localize_only with map.enabled off: there would never be a pose; turn one of them round");
+    throw InputError("map.localize_only with map.enabled off: there would never be a pose; change one of them");
   if (enhance.method != EdgeMethod::None && !enhance_detect && !enhance_track) {
     throw InputError(
         "enhance.method with enhance.detect and enhance.track both off: nothing would use the enhanced frame; turn one "

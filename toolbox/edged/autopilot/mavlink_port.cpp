@@ -91,8 +91,7 @@ void MavlinkPort::open_serial(const std::string& device, const std::string& baud
   if (speed == kBauds.end()) {
     std::string known;
     for (const Baud& each : kBauds) known += std::string(known.empty() ? "" : ", ") + each.text;
-    throw InputError::format("{}: '{}' is no speed of a serial line that can be set: give one of {}", url_, baud,
-                             known);
+    throw InputError::format("{}: '{}' is not a speed that a serial line can have: give one of {}", url_, baud, known);
   }
   handle_ = ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (handle_ < 0)
@@ -100,7 +99,7 @@ void MavlinkPort::open_serial(const std::string& device, const std::string& baud
                              url_, std::strerror(errno));
   termios settings{};
   if (tcgetattr(handle_, &settings) != 0)
-    throw InputError::format("{}: is no serial device: give one such as /dev/ttyACM0", url_);
+    throw InputError::format("{}: is not a serial device: give one such as /dev/ttyACM0", url_);
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);

@@ -117,7 +117,7 @@ TEST(MavlinkPort, RefusesWhatIsNoAddressInOneLineWithTheRemedy) {
        {"", "udp", "udp:", "udp:14550", "tcp:127.0.0.1:5760", "udp:127.0.0.1:", "serial:/dev/ttyACM0"})
     EXPECT_THAT(refusal_of(url), HasSubstr("such as udp:127.0.0.1:14550")) << url;
   EXPECT_THAT(refusal_of("udp:127.0.0.1:abc"), HasSubstr("give the address and the port"));
-  EXPECT_THAT(refusal_of("serial:/dev/null:921600"), HasSubstr("no serial device"));
+  EXPECT_THAT(refusal_of("serial:/dev/null:921600"), HasSubstr("not a serial device"));
   EXPECT_THAT(refusal_of("serial:/dev/nothing:921600"), HasSubstr("plugged in"));
   EXPECT_THAT(refusal_of("serial:/dev/null:9601"), HasSubstr("921600"));
   const TestUdp taken;

@@ -85,7 +85,7 @@ MissingViews missing_views(const TargetViews& camera, const LensFit& fit, const 
   judge(tilt < kLeastTilt, tilt < kGoodTilt,
         fmt::format(
             "camera {}: the target is tilted by {:.0f} deg about {} (one sigma); tilt it by 30 deg to both sides "
-            "there, as focal length and distance are told apart by that alone",
+            "there, as only that separates focal length and distance",
             camera.name, tilt / kDegree,
             coverage.tilt_x < coverage.tilt_y ? "the horizontal axis of the image" : "the vertical axis of the image"));
   // With a projection of its own (omni, ds, eucm), fx trades against its coefficients.

@@ -144,8 +144,9 @@ void check_turns(const TargetViews& camera, const std::vector<CameraTurn>& turns
   constexpr const char* kAxes[] = {"its x axis (nod up and down)", "its y axis (look left and right)",
                                    "its optical axis (roll)"};
   throw InputError::format(
-      "camera {}: it hardly turned about {}: {:.1f} deg/s on average, {:.0f} are needed for pose and clock of the IMU; "
-      "record turns to and fro about all three axes",
+      "camera {}: it hardly rotated about {}: {:.1f} deg/s on average, {:.0f} are needed for pose and clock of the "
+      "IMU; "
+      "rotate back and forth about all three axes",
       camera.name, kAxes[axis], rate / kDegree, kLeastRate / kDegree);
 }
 

@@ -300,7 +300,7 @@ LensFit fit_lens(const TargetViews& camera, const TargetLayout& layout, Distorti
   for (int round = 0; round < 2; ++round)
     if (!improve(all, Free::All, camera, sigma_of(all)))
       throw InputError::format(
-          "camera {}: the views leave the distortion near the border of the image open; bring the target to all "
+          "camera {}: the views do not determine the distortion near the border of the image; bring the target to all "
           "corners "
           "of the image, or choose a --lens with fewer coefficients",
           camera.name);

@@ -167,7 +167,8 @@ void retime(RigUnknowns& unknowns, const std::vector<TargetCamera>& cameras, std
   }
   std::erase_if(unknowns.states, [&](const RigState& s) { return s.t < imu.front().t || s.t > imu.back().t; });
   if (unknowns.states.size() < kFewestStates)
-    throw InputError("the clocks of cameras and IMU do not fit: their recordings hardly overlap by the clock found");
+    throw InputError(
+        "the clocks of cameras and IMU do not fit: with the estimated offset their recordings hardly overlap");
   std::ranges::stable_sort(unknowns.states, {}, &RigState::t);
   // Two cameras whose clocks turn out to be the same share no state; too short an interval has no information.
   const auto close = [](const RigState& a, const RigState& b) { return b.t - a.t < std::chrono::microseconds(50); };

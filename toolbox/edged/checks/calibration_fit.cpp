@@ -45,8 +45,8 @@ std::string contradiction(const CalibrationFound& c, const Offset& rotation, con
     text += fmt::format("{}its rotation to the IMU is {:.1f} deg +- {:.1f} deg off; {}", text.empty() ? "" : ", and ",
                         rotation.value, rotation.sigma,
                         c.inverse  ? fmt::format("its inverse fits: {}", kTurnRound)
-                        : c.beyond ? "calibrate camera and IMU anew"
-                                   : "--out FILE writes the one that was found");
+                        : c.beyond ? "calibrate camera and IMU again"
+                                   : "--out FILE writes the estimated one");
   return text;
 }
 

@@ -35,7 +35,7 @@ TEST(CalibFit, RotationThatIsOffSaysWhatToDo) {
   CalibrationFound far = found(5.0, -6.0);
   far.beyond = true;
   EXPECT_THAT(fit_of(far).why, HasSubstr("write `time_offset: -0.0060`, and its rotation to the IMU is 5.0 deg"));
-  EXPECT_THAT(fit_of(far).why, HasSubstr("calibrate camera and IMU anew"));
+  EXPECT_THAT(fit_of(far).why, HasSubstr("calibrate camera and IMU again"));
 }
 
 TEST(CalibFit, RotationWhoseInverseFitsIsToBeTurnedRound) {

@@ -31,22 +31,23 @@ void check_shift(const CameraCheck& check, Findings& out) {
   const double sigma = 1e3 * found.time_sigma_s;
   const bool is_vague = sigma > kDetermined_ms;
   const double sigmas = is_vague ? kSigmasOfVague : kSigmas;
-  const std::string text =
-      fmt::format("camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms by its turning, {:+.1f} ms by the calibration",
-                  check.camera.name, shift, sigma, given);
+  const std::string text = fmt::format(
+      "camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms from its rotation rate, {:+.1f} ms in the calibration",
+      check.camera.name, shift, sigma, given);
   const std::string remedy = fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset));
   const double off = std::abs(shift - given);
   const bool wrong = off > std::max(least_ms, sigmas * sigma);
   if (found.at_bound)
-    out.warn(fmt::format("camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms by its turning",
-                         check.camera.name, 1e3 * to_seconds(kMostShift), given),
+    out.warn(fmt::format(
+                 "camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms, from its rotation rate",
+                 check.camera.name, 1e3 * to_seconds(kMostShift), given),
              "check the clocks of camera and IMU");
   else if (wrong && off > kMostCorrected_ms && !is_vague && !events)
     out.error(text, remedy);
   else if (wrong)
     out.warn(text, remedy);
   else if (sigma > kDetermined_ms)
-    out.note(fmt::format("camera {}: its time offset cannot be determined by its turning (+- {:.1f} ms)",
+    out.note(fmt::format("camera {}: its time offset cannot be determined from its rotation rate (+- {:.1f} ms)",
                          check.camera.name, sigma));
   else
     out.good(text);
@@ -104,10 +105,10 @@ void check_rotation(const CameraCheck& check, Findings& out) {
   const std::string name = "camera " + check.camera.name;
   const auto axis = unknown_axis(found);
   if (axis)
-    out.note(fmt::format(
-        "{}: turned about one axis only, ({:.2f}, {:.2f}, {:.2f}) of the camera: its rotation about that one is "
-        "not checked",
-        name, axis->x(), axis->y(), axis->z()));
+    out.note(
+        fmt::format("{}: it rotated about one axis only, ({:.2f}, {:.2f}, {:.2f}) of the camera: its mounting angle "
+                    "about that axis is not checked",
+                    name, axis->x(), axis->y(), axis->z()));
   const Eigen::Matrix3d given = check.camera.T_B_C.rotation().toRotationMatrix();
   const RotationError error = error_of(given, found);
   const std::string number = fmt::format("{:.1f} deg +- {:.1f} deg", error.degrees, error.sigma_deg);
@@ -134,11 +135,11 @@ void check_rotation(const CameraCheck& check, Findings& out) {
 /// An initial guess for a missing calibration.
 void tell_rotation(const CameraCheck& check, Findings& out) {
   const Eigen::Matrix3d& R = check.agreement->R_B_C;
-  out.note(fmt::format(
-               "camera {}: its rotation to the IMU is not calibrated; by its turning R_B_C is [{:.3f} {:.3f} {:.3f}; "
-               "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
-               check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2),
-               check.agreement->rotation_sigma * kDegreesPerRadian),
+  out.note(fmt::format("camera {}: its rotation to the IMU is not calibrated; estimated from its rotation rate, R_B_C "
+                       "is [{:.3f} {:.3f} {:.3f}; "
+                       "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
+                       check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1),
+                       R(2, 2), check.agreement->rotation_sigma * kDegreesPerRadian),
            "a run needs it and the lever arm: calibrate camera and IMU together, for instance with Kalibr");
 }
 
@@ -163,7 +164,7 @@ void check_gyro_scale(const CameraCheck& check, Findings& out) {
   const double off = found.gyro_scale - 1.0;
   const std::string number = fmt::format("{:.1f} % +- {:.1f} %", 100 * std::abs(off), 100 * sigma);
   if (std::abs(off) > std::max(kLeast, kSigmas * sigma))
-    out.warn(fmt::format("camera {}: the gyro reads {} too {} by its turning", check.camera.name, number,
+    out.warn(fmt::format("camera {}: the gyro reads {} too {} for its rotation rate", check.camera.name, number,
                          off > 0 ? "much" : "little"),
              fmt::format("divide the gyro by {:.3f}; or the focal length is wrong by as much", found.gyro_scale));
   else if (sigma > kDetermined)
@@ -201,7 +202,7 @@ bool check_size(const CameraCheck& check, const RecordingStatistics& s, Findings
 void check_mounting(const CameraCheck& check, Findings& out) {
   if (check.agreement->mirrored)
     return out.error(
-        fmt::format("camera {}: the gyro turns the other way, as if it were seen in a mirror", check.camera.name),
+        fmt::format("camera {}: the gyro rotates the other way, as if its axes were mirrored", check.camera.name),
         "one or all three of its axes have the wrong sign: a right-handed IMU has x turning towards y about z");
   check_shift(check, out);
   check.has_extrinsics ? check_rotation(check, out) : tell_rotation(check, out);
@@ -215,17 +216,18 @@ void check_camera(const CameraCheck& check, Findings& out) {
     return out.note(
         fmt::format("camera {}: cannot be compared with the gyro: too few turns with corners and IMU samples", name));
   if (check.lens)
-    return out.error(fmt::format("camera {}: it turns like the gyro only through another lens: {}", name, *check.lens),
-                     "choose the calibration of this lens, or calibrate it anew");
+    return out.error(fmt::format("camera {}: it agrees with the gyro only with another lens: {}", name, *check.lens),
+                     "choose the calibration of this lens, or calibrate it again");
   if (check.gross_deg > 0.0)
-    return out.error(fmt::format("camera {}: turns as if mounted about {:.0f} deg off the calibration, by the gyro",
-                                 name, check.gross_deg),
-                     "check the rotation of T_B_C and its direction: `edged calib` shows both");
+    return out.error(
+        fmt::format("camera {}: rotates as if mounted about {:.0f} deg off the calibration, compared with the gyro",
+                    name, check.gross_deg),
+        "check the rotation of T_B_C and its direction: `edged calib` shows both");
   if (!check.sure())
-    return out.note(fmt::format(
-        "camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % of "
-        "its turning unexplained)",
-        name, 100 * std::min(1.0, check.agreement->unexplained)));
+    return out.note(
+        fmt::format("camera {}: turns too little, or too differently from the gyro, to check its calibration ({:.0f} % "
+                    "of its rotation unexplained)",
+                    name, 100 * std::min(1.0, check.agreement->unexplained)));
   Findings found;
   check_mounting(check, found);
   const bool contradicts =
@@ -256,7 +258,7 @@ void check_accel(const CheckInput& input, Findings& out) {
   constexpr double kLeast = 0.3, kByChance = 3.0;
   const auto turns_alike = [](const CameraCheck& check) { return check.sure() && !check.agreement->mirrored; };
   if (input.accel_axes && std::ranges::any_of(input.cameras, turns_alike))
-    return out.error("accelerometer: gravity does not turn in its axes as measured by the gyro",
+    return out.error("accelerometer: gravity does not rotate in its axes as the gyro measures",
                      fmt::format("give it the axes of the gyro: {} would fit", *input.accel_axes));
   const CameraCheck* best = nullptr;
   const auto surety = [=](const CameraCheck& check) {
@@ -270,7 +272,7 @@ void check_accel(const CheckInput& input, Findings& out) {
   if (!best || surety(*best) <= 1.0) return;
   const AccelAgreement& accel = best->agreement->accel;
   if (accel.correlation < 0.0)
-    out.error(fmt::format("accelerometer: camera {} moves against it (correlation {:.2f} over {} turns)",
+    out.error(fmt::format("accelerometer: camera {} moves opposite to it (correlation {:.2f} over {} turns)",
                           best->camera.name, accel.correlation, accel.turns),
               "the sign of all its axes is wrong: multiply it by -1; at rest it must read +9.8 m/s^2 along the axis "
               "that points up");
@@ -283,10 +285,10 @@ void check_accel(const CheckInput& input, Findings& out) {
 
 void check_cameras(const CheckInput& input, Findings& out) {
   for (const std::string& pair : input.exchanged)
-    out.error(fmt::format("cameras {}: their images match only as if exchanged", pair),
+    out.error(fmt::format("cameras {}: their images match only if exchanged", pair),
               "exchange their topics or files, or their names in the calibration", Unusable::Calibration);
   if (input.flipped)
-    out.error(fmt::format("events: they lie on the edges of the frames only if {}", *input.flipped),
+    out.error(fmt::format("events: they match the edges of the frames only if {}", *input.flipped),
               "change their pixels in the driver or the converter", Unusable::Calibration);
   const bool comparable = !is_unusable(Unusable::Calibration, out.list);
   const auto errors = [&out] { return std::ranges::count(out.list, Severity::Error, &Finding::severity); };

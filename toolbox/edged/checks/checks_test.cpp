@@ -49,12 +49,12 @@ TEST(Checks, NamesEventsThatLieElsewhereAndNoMountingThatFollows) {
   CheckInput input{s, true, {agreeing()}};
   input.cameras[0].agreement->unexplained = 0.7;
   input.cameras[0].gross_deg = 170.0;
-  EXPECT_THAT(remedy_of(check_recording(input), Error, "camera cam: turns as if mounted about 170 deg off"),
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "camera cam: rotates as if mounted about 170 deg off"),
               HasSubstr("T_B_C"));
   input.flipped = "mirrored left to right";
-  EXPECT_THAT(remedy_of(check_recording(input), Error, "on the edges of the frames only if mirrored left to right"),
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "the edges of the frames only if mirrored left to right"),
               HasSubstr("driver"));
-  EXPECT_EQ(remedy_of(check_recording(input), Error, "turns as if mounted"), "NO SUCH FINDING");
+  EXPECT_EQ(remedy_of(check_recording(input), Error, "rotates as if mounted"), "NO SUCH FINDING");
 }
 
 TEST(Checks, NamesALeverArmInMillimetresOnceForEachLens) {
@@ -151,9 +151,9 @@ TEST(Checks, NamesAGyroWhoseScaleIsOffAndAnAccelerometerThatPointsTheOtherWay) {
   const RecordingStatistics s = healthy();
   CheckInput input{s, true, {check}};
   input.accel_axes = "(y, -x, z)";
-  EXPECT_THAT(remedy_of(check_recording(input), Error, "gravity does not turn in its axes"), HasSubstr("(y, -x, z)"));
+  EXPECT_THAT(remedy_of(check_recording(input), Error, "gravity does not rotate in its axes"), HasSubstr("(y, -x, z)"));
   check.agreement->accel = {100, -0.7};
-  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "moves against it"), HasSubstr("multiply it by -1"));
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "moves opposite to it"), HasSubstr("multiply it by -1"));
 }
 
 TEST(Checks, NamesACauseAndNotWhatFollowsFromIt) {
@@ -212,7 +212,7 @@ TEST(Checks, JudgesNoCalibrationByMotionThatSaysNothing) {
   CameraCheck check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
   check.agreement->unexplained = 0.8;
-  EXPECT_EQ(remedy_of(healthy(), {check}, Note, "80 % of its turning unexplained"), "");
+  EXPECT_EQ(remedy_of(healthy(), {check}, Note, "80 % of its rotation unexplained"), "");
 }
 
 TEST(Checks, JudgesNoCalibrationByAShortTurning) {
@@ -274,7 +274,7 @@ TEST(Checks, NamesSwappedColumnsAndMirroredAxesAsSuch) {
   EXPECT_EQ(std::ranges::count(findings, Error, &Finding::severity), 1) << "no unit is reported beside it";
   CameraCheck check = agreeing();
   check.agreement->mirrored = true;
-  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "turns the other way"), HasSubstr("sign"));
+  EXPECT_THAT(remedy_of(healthy(), {check}, Error, "rotates the other way"), HasSubstr("sign"));
 }
 
 TEST(Checks, NamesHotPixelsMissingPolaritiesDarkFramesAndForeignTruth) {

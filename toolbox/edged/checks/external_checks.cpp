@@ -24,8 +24,8 @@ void check_rate(const std::string& name, const ExternalStatistics& s, Findings& 
     out.warn(fmt::format("{} at {:.0f} Hz, {} gaps of {:.1f} s together, the longest {:.1f} s at {:.3f} s", name, rate,
                          stream.gaps, to_seconds(stream.missing), to_seconds(stream.longest.front().length),
                          to_seconds(stream.longest.front().after)),
-             "within a gap it does not bound the drift; leave samples of a range finder out of range out instead of "
-             "repeating them");
+             "within a gap it does not bound the drift; remove the samples of a range finder that is out of range "
+             "instead of repeating them");
   else
     out.good(fmt::format("{} at {:.0f} Hz", name, rate));
 }

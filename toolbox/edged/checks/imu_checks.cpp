@@ -161,12 +161,12 @@ void tell_clock_rate(const CheckInput& input, const CameraCheck& measured, doubl
   const double rate = as_lasts ? *known : measured.clock->rate;
   const bool far_off = std::abs(rate - 1.0) > 0.1;
   const bool lasts = far_off && std::abs(input.recording.imu_span_ratio() / rate - 1.0) < kSameLength;
-  out.error(
-      fmt::format("{} clock runs at {:.{}f} times that of camera {}, by the rotation of both",
-                  lasts ? lengths_text(input.recording, cameras_s) + ": its" : "the IMU's", rate, far_off ? 2 : 3,
-                  measured.camera.name),
-      fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then mend the driver", rate),
-      Unusable::Calibration);
+  out.error(fmt::format("{} clock runs at {:.{}f} times that of camera {}, by the rotation of both",
+                        lasts ? lengths_text(input.recording, cameras_s) + ": its" : "the IMU's", rate, far_off ? 2 : 3,
+                        measured.camera.name),
+            fmt::format("--imu-clock-rate {:.3f} corrects the stamps from the first sample on; then correct the driver",
+                        rate),
+            Unusable::Calibration);
 }
 
 void check_clock(const CheckInput& input, Findings& out) {
@@ -187,9 +187,9 @@ void check_clock(const CheckInput& input, Findings& out) {
   out.error(lengths_text(s, cameras_s) + (unit ? ": its stamps are in another unit"
                                                : fmt::format(": its clock runs at {:.1f} times theirs", *known)),
             unit ? "write all stamps in one unit"
-                 : fmt::format("--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then mend "
-                               "the driver",
-                               *known),
+                 : fmt::format(
+                       "--imu-clock-rate {:.3g} corrects the stamps from the first sample on; then correct the driver",
+                       *known),
             Unusable::Calibration);
 }
 

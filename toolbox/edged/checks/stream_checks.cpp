@@ -15,7 +15,7 @@ constexpr double kMostHot = 0.02;       // share of the events
 constexpr double kMostLeftOut_s = 0.5;  // per end of the recording, not covered by all sensors
 
 constexpr const char* kTruthRemedy =
-    "leave the wrong poses out, as a gap is evaluated rightly; until then no estimate is judged by it";
+    "remove the wrong poses, as gaps are evaluated correctly; until then no estimate is compared with it";
 
 constexpr double kMostRepeated = 0.25;  // share of the frames
 
@@ -47,7 +47,7 @@ void check_overlap(const CheckInput& input, Findings& out) {
   const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
   if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
-              "stamp all sensors on one clock when recording: no run can mend whole seconds");
+              "stamp all sensors on one clock when recording: the online calibration corrects milliseconds only");
   else if (common < std::max(0.9 * least, least - kMostLeftOut_s) || beyond_imu_s(s) > kMostLeftOut_s)
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "the time that only some of them cover is not used; check that all were recorded");
@@ -71,7 +71,7 @@ void check_presence(const CheckInput& input, Findings& out) {
 void check_silence(const CheckInput& input, Findings& out) {
   const RecordingStatistics& s = input.recording;
   if (s.events.gaps > 0)
-    out.note(fmt::format("{} silences of the events of {:.2f} s together, the longest {:.2f} s at {:.3f} s",
+    out.note(fmt::format("{} periods without events, {:.2f} s together, the longest {:.2f} s at {:.3f} s",
                          s.events.gaps, to_seconds(s.events.missing), to_seconds(s.events.longest.front().length),
                          to_seconds(s.events.longest.front().after)),
              "a still scene, or lost data: compare with the motion");
@@ -119,15 +119,15 @@ void check_frames(const CheckInput& input, Findings& out) {
     out.warn(fmt::format("{} gaps of the frames, {:.2f} s together, the longest {:.2f} s at {:.3f} s", s.frames.gaps,
                          to_seconds(s.frames.missing), to_seconds(s.frames.longest.front().length),
                          to_seconds(s.frames.longest.front().after)),
-             input.dropped_frames ? "this run dropped frames, as it was too slow for them"
-                                  : "corners are lost over long ones; look for an overloaded bus");
+             input.dropped_frames ? "this run dropped frames, as it was too slow"
+                                  : "features are lost over long gaps; look for an overloaded bus");
   if (s.repeated_share > kMostRepeated)
     out.warn(fmt::format("{:.0f} % of the frames repeat the image before them", 100 * s.repeated_share),
-             "the driver sends an image several times: leave the repeated ones out, whose stamps are wrong",
+             "the driver sends an image several times: remove the repeated ones, whose stamps are wrong",
              Unusable::Calibration);
   if (s.mean_brightness < 15.0)
     out.note(fmt::format("frames are dark: mean brightness {:.0f} of 255", s.mean_brightness),
-             "expose longer, or rely on --mode events or fused");
+             "expose longer, or use --mode events or fused");
   else if (s.frames.gaps == 0)
     out.good(fmt::format("frames at {:.1f} Hz, mean brightness {:.0f} of 255", s.frames.rate_hz(), s.mean_brightness));
 }
@@ -168,7 +168,7 @@ void check_truth(const CheckInput& input, Findings& out) {
   const StreamStatistics& truth = s.truth->stream;
   if (*truth.begin > *s.imu.end || *truth.end < *s.imu.begin)
     out.warn("ground truth does not overlap: " + interval("truth", truth) + ", " + interval("IMU", s.imu),
-             "its clock is another one: shift it before evaluating");
+             "it is on another clock: shift its stamps before evaluating");
   else if (s.truth->frozen > Duration(0))
     out.warn(fmt::format("ground truth: the same pose for {:.3f} s from {:.3f} s on, in motion",
                          to_seconds(s.truth->frozen), to_seconds(s.truth->frozen_since)),

@@ -101,7 +101,7 @@ Similarity align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
   const Fit fit = umeyama(m, kind == AlignmentKind::Sim3);
   if (!fit.unique) {
     throw InputError(
-        "cannot align: the positions lie on a point or a line and leave the rotation free; "
+        "cannot align: the positions lie on a point or a line and do not determine the rotation; "
         "use alignment none or a longer window");
   }
   return fit.alignment;

@@ -303,7 +303,7 @@ Recording open_file(const std::filesystem::path& file, const Rig* rig, const Rec
   throw InputError::format(
       "{}: unknown file format; looked for {} and text with an event in each line (`t x y p`, or columns named in the "
       "first line; also as .gz{}). Of a recording in several files give the folder (unpack an archive other than zip "
-      "first, and what is no text out of .gz)",
+      "first, and what is not text out of .gz)",
       file.string(), fmt::join(names, ", "), why.empty() ? why : "; " + why);
 }
 

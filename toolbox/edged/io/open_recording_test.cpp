@@ -247,16 +247,16 @@ TEST(Recording, APipeIsRefusedAndNotWaitedFor) {
   for (const char* name : {"a.raw", "b.bag", "c.txt", "d.h5"}) {
     const auto pipe = folder.path() / name;
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_THAT(input_error([&] { open_recording(pipe); }), HasSubstr("no file but a pipe"));
+    EXPECT_THAT(input_error([&] { open_recording(pipe); }), HasSubstr("not a file but a pipe"));
   }
-  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("a.raw: is no file but a pipe"));
+  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("a.raw: is not a file but a pipe"));
 }
 
 TEST(Recording, APipeInTheFolderOfARecordingIsNamedAndNotTakenForAMissingFile) {
   TempFolder folder;
   folder.write("events.txt", "0.1 30 20 1\n0.2 1 1 0\n");
   ASSERT_EQ(::mkfifo((folder.path() / "imu.txt").c_str(), 0600), 0);
-  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("imu.txt: is no file but a pipe"));
+  EXPECT_THAT(input_error([&] { open_recording(folder.path()); }), HasSubstr("imu.txt: is not a file but a pipe"));
 }
 
 TEST(Recording, SensorSizeComesFromTheRigElseTheImagesElseTheDavis) {

@@ -138,7 +138,7 @@ WriteCounts write_recording(Dataset& dataset, const WritableFormat& format, cons
   constexpr std::size_t kProgressEvery = 256;  // measurements
   std::error_code ignored;
   const bool is_file = !format.extension.empty(), existed = std::filesystem::exists(path, ignored);
-  if (is_file && existed) throw InputError::format("{}: is there already: give another name", path.string());
+  if (is_file && existed) throw InputError::format("{}: exists already: give another name", path.string());
   if (!dataset.info().has_events && !format.frames && !format.imu)
     throw InputError::format("{}: holds no events, and format {} holds nothing else", dataset.info().name, format.name);
   if (!format.several_cameras) refuse_several_event_cameras(dataset.info(), format);

@@ -99,13 +99,14 @@ Ramp plateau(double t, double begin_s, double end_s, double ramp_s) {
 void Disturbance::visit(ConfigFields& fields) {
   std::vector<std::pair<std::string_view, DisturbanceKind>> kinds;
   for (const KindRow& row : kKinds) kinds.emplace_back(row.name, row.kind);
-  fields.choice("kind", kind, kinds, {.effect = "one thing that goes wrong"});
+  fields.choice("kind", kind, kinds, {.effect = "what goes wrong in the recording"});
   fields.add("at_s", at_s, {"s", 0, 3600, "when it begins, on the camera's clock"});
-  fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: as usual for its kind"});
+  fields.add("length_s", length_s, {"s", 0, 3600, "how long it lasts; 0: the default of its kind"});
   fields.add(
       "strength", strength,
       {"", 0, 1e4,
-       "0: as usual. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's range; "
+       "0: the default of its kind. lights-off: share of the light left; gyro-saturation: peak rate over the gyro's "
+       "range; "
        "shake: peak rate in deg/s; event-storm: million events a second; walkers: share of the view; lamps: their "
        "light over that of a well lit room; put-down: peak of the knocks in g; flicker: its modulation, from 0.05 to "
        "1, of which flicker.* has the rest"});

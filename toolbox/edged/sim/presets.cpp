@@ -45,7 +45,8 @@ SimulatorConfig load_preset(const std::string& name, int bases_left) {
   if (!file)
     throw InputError::format("there is no simulator preset '{}'; choose one of {}", name,
                              fmt::join(simulator_presets(), ", "));
-  if (bases_left == 0) throw InputError::format("{}: its bases have no end; give one that has none", file->string());
+  if (bases_left == 0)
+    throw InputError::format("{}: its chain of base presets has no end; give a preset without a base", file->string());
   PresetFile own, whole;
   read_preset(*file, own);
   if (!own.base.empty()) whole.config = load_preset(own.base, bases_left - 1);

@@ -180,7 +180,7 @@ TEST(Simulator, AFileIsAPresetThatDiffersFromItsBase) {
   };
   EXPECT_THAT(told("wrong"), testing::HasSubstr("wrong.yaml:1: unknown option 'motion.hight'"));
   EXPECT_THAT(told("turned-off"), testing::HasSubstr("T_B_C must be three rows of four numbers"));
-  EXPECT_THAT(told("endless"), testing::HasSubstr("endless.yaml: its bases have no end"));
+  EXPECT_THAT(told("endless"), testing::HasSubstr("endless.yaml: its chain of base presets has no end"));
   ::unsetenv("EDGED_PRESETS");
 }
 

@@ -283,7 +283,7 @@ void ConfigFields::set(const std::string& key, const std::string& value) {
 void ConfigFields::set(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError::format("'{}' is no assignment; write key=value", assignment);
+    throw InputError::format("'{}' is not an assignment; write key=value", assignment);
   }
   set(assignment.substr(0, equals), assignment.substr(equals + 1));
 }

@@ -72,13 +72,13 @@ class Initializer {
   Rig rig_;
   ImuNoise noise_;  ///< as of the newest input
   EstimatorConfig config_;
-  std::optional<BiasPrior> known_biases_;                 ///< by an earlier estimate
-  std::vector<InitFrame> buffer_;                         ///< views, the oldest first
-  std::vector<ImuSample> pending_imu_;                    ///< since the last view
-  std::vector<ExternalSample> pending_external_;          ///< since the last view
-  std::optional<Timestamp> since_;                        ///< begin of the first input
-  Timestamp next_solve_;                                  ///< a rejected window is not solved again with every view
-  std::string missing_in_motion_ = "features to follow";  ///< why the last view did not initialize in motion
+  std::optional<BiasPrior> known_biases_;                ///< by an earlier estimate
+  std::vector<InitFrame> buffer_;                        ///< views, the oldest first
+  std::vector<ImuSample> pending_imu_;                   ///< since the last view
+  std::vector<ExternalSample> pending_external_;         ///< since the last view
+  std::optional<Timestamp> since_;                       ///< begin of the first input
+  Timestamp next_solve_;                                 ///< a rejected window is not solved again with every view
+  std::string missing_in_motion_ = "features to track";  ///< why the last view did not initialize in motion
 };
 
 }  // namespace edged

@@ -234,7 +234,7 @@ bool StandstillDetector::explains_image(const std::optional<KnownMotion>& motion
   }
   const double depth_m = motion && motion->depth_m ? *motion->depth_m : kStandstillTuning.usual_depth_m;
   const double allowed = config_.window_s * (speed / depth_m + rate) + kStandstillTuning.max_image_motion;
-  reason_ = fmt::format("features move {:.4f} rad, {:.4f} by motion that the IMU does not feel", *travel, allowed);
+  reason_ = fmt::format("features move {:.4f} rad, {:.4f} by motion that the IMU does not measure", *travel, allowed);
   return *travel < allowed;
 }
 

@@ -252,7 +252,7 @@ TEST(StandstillDetector, TakesGentleMotionThatTheEstimateAllowsForNoRest) {
   Bench bench;
   bench.run(4.0, {.gyro = kNoBias, .corner_speed = kGentle, .motion = uncertain});
   EXPECT_FALSE(bench.detector.still());
-  EXPECT_THAT(bench.detector.reason(), HasSubstr("motion that the IMU does not feel"));
+  EXPECT_THAT(bench.detector.reason(), HasSubstr("motion that the IMU does not measure"));
   const KnownMotion moving{.speed = 0.05, .speed_sigma = 0.005, .rate_sigma = 1e-3, .depth_m = 2.0};
   bench.run(4.0, {.gyro = kNoBias, .corner_speed = kGentle, .motion = moving});
   EXPECT_FALSE(bench.detector.still());

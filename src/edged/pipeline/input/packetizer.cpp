@@ -28,7 +28,7 @@ void PacketizerConfig::visit(ConfigFields& fields) {
              {"s", 0, 1, "Shortest time between two packets without a frame. It bounds the computing time."});
   fields.add(
       "remove_flicker", remove_flicker,
-      {.effect = "Leave out events of lamps on mains or PWM, while the events of the whole image swing together."});
+      {.effect = "Leave out events of lamps on mains or PWM, while the event rate of the whole image oscillates."});
   fields.add("max_waiting_events", max_waiting_events,
              {"events", 1000, 1e9,
               "Largest number of events that wait for the IMU. The oldest packets beyond it are dropped."});

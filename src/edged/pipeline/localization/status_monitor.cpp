@@ -74,7 +74,7 @@ std::string StatusMonitor::doubt(const EstimatorResult& result, const Uncertaint
     return fmt::format("velocity known to {:.2f} m/s, {:.2f} required", uncertainty.velocity_sigma,
                        config_.max_velocity_sigma);
   if (uncertainty.place_sigma > config_.max_place_sigma)
-    return fmt::format("place known to {:.2f} m since a gap or loss, {:.2f} required", uncertainty.place_sigma,
+    return fmt::format("position known to {:.2f} m since a gap or loss, {:.2f} required", uncertainty.place_sigma,
                        config_.max_place_sigma);
   if (const double sigma = uncertainty.scale_sigma.value_or(0.0); sigma > config_.max_scale_sigma)
     return fmt::format("motion too gentle for this IMU: scale known to {:.0f} %, {:.0f} % required",

@@ -98,7 +98,7 @@ TEST(StatusMonitor, DoubtsAPlaceThatIsNotKnown) {
   StatusMonitor monitor({});
   EXPECT_EQ(monitor.update(healthy(), {.place_sigma = 0.1}, true, at(0.0)), TrackingStatus::Good);
   EXPECT_EQ(monitor.update(healthy(), {.place_sigma = 0.2}, true, at(0.1)), TrackingStatus::Degraded);
-  EXPECT_THAT(monitor.reason(), testing::HasSubstr("place known to 0.20 m"));
+  EXPECT_THAT(monitor.reason(), testing::HasSubstr("position known to 0.20 m"));
 }
 
 TEST(StatusMonitor, BearsMoreStrainAfterALossByIt) {

@@ -182,7 +182,7 @@ void judge_heights(const HeightAgreement& found, Findings& out) {
   const double sigma = found.scale_sigma;
   if (found.scale + kSureSigmas * sigma < 0.0)
     out.error("height: its sign contradicts the accelerometer",
-              "heights are positive upwards: negate them in the file (a depth is no height)");
+              "heights are positive upwards: negate them in the file (a depth is not a height)");
   else if (std::abs(found.scale - 1.0) > std::max(kOff, kSureSigmas * sigma))
     out.warn(
         fmt::format("height: its changes are {:.2g} +- {:.2g} times those of the accelerometer", found.scale, sigma),

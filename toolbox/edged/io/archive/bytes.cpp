@@ -12,11 +12,11 @@ namespace edged {
 void require_regular_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_other(file, ignored))
-    throw InputError::format("{}: is no file but a pipe or a device: write its data to a file first", file.string());
+    throw InputError::format("{}: is not a file but a pipe or a device: write its data to a file first", file.string());
 }
 
 void refuse_shortened_file(const std::string& name) {
-  throw InputError::format("{}: was cut while it was read, or its disk fails: copy it anew", name);
+  throw InputError::format("{}: was truncated while it was read, or its disk fails: copy it again", name);
 }
 
 BinaryFile::BinaryFile(const std::filesystem::path& file) : name_(file.string()) {

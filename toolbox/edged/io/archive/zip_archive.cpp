@@ -79,7 +79,7 @@ ZipArchive::ZipArchive(const fs::path& file) : file_(file) {
   zip_t* archive = zip_open(file.c_str(), ZIP_RDONLY, &error);
   if (!archive)
     throw InputError::format(
-        "{}: cannot be read as a zip archive ({}): is it complete? Unpack it, or mend it (zip -FF)", file.string(),
+        "{}: cannot be read as a zip archive ({}): is it complete? Unpack it, or repair it (zip -FF)", file.string(),
         zip_reason(error));
   zip_.reset(archive, zip_discard);
   const zip_int64_t count = zip_get_num_entries(archive, 0);

@@ -92,8 +92,9 @@ CalibrationFile read_basalt(const YamlReader& root) {
   const std::vector<YamlReader> poses = value.at("T_imu_cam").items(), intrinsics = value.at("intrinsics").items(),
                                 resolutions = value.at("resolution").items();
   if (poses.size() != intrinsics.size() || poses.size() != resolutions.size())
-    value.fail(fmt::format("{} of T_imu_cam, {} of intrinsics and {} of resolution do not make whole cameras",
-                           poses.size(), intrinsics.size(), resolutions.size()));
+    value.fail(fmt::format(
+        "{} of T_imu_cam, {} of intrinsics and {} of resolution do not match: each camera needs one of each",
+        poses.size(), intrinsics.size(), resolutions.size()));
   CalibrationFile out;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Lens lens;

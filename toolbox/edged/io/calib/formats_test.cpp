@@ -140,7 +140,7 @@ TEST_F(CalibrationFormats, VinsMapsTheCameraToTheImuAndADavisSeesBoth) {
   EXPECT_EQ(c.rig.cameras[0].model.distortion(), DistortionModel::RadTan);
   EXPECT_DOUBLE_EQ(c.rig.cameras[0].model.coefficients()[3], -0.002);
   EXPECT_FALSE(c.has_imu_noise);
-  EXPECT_THAT(c.warnings, ElementsAre(HasSubstr("is no density")));
+  EXPECT_THAT(c.warnings, ElementsAre(HasSubstr("is not a density")));
 }
 
 TEST_F(CalibrationFormats, VinsTurnsItRoundWhereTheFlagSaysSo) {

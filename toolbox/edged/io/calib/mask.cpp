@@ -49,7 +49,7 @@ std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraMod
     used.insert(used.end(), *count, std::exchange(value, static_cast<std::uint8_t>(255 - value)));
   }
   if (used.size() != pixels_of(camera))
-    runs.fail(fmt::format("tells of {} pixels, the camera has {}", used.size(), pixels_of(camera)));
+    runs.fail(fmt::format("describes {} pixels, the camera has {}", used.size(), pixels_of(camera)));
   return used;
 }
 

@@ -77,18 +77,18 @@ TEST_F(MaskOfACamera, IsRefusedWithItsKeyItsFileAndWhatToDo) {
 
 TEST_F(MaskOfACamera, APipeIsNoPicture) {
   ASSERT_EQ(::mkfifo((folder_.path() / "pipe.png").c_str(), 0600), 0);
-  EXPECT_THAT(refusal("    mask: pipe.png\n"), HasSubstr("pipe.png: is no file but a pipe or a device"));
+  EXPECT_THAT(refusal("    mask: pipe.png\n"), HasSubstr("pipe.png: is not a file but a pipe or a device"));
 }
 
 TEST_F(MaskOfACamera, RunsOfPixelsMustMakeUpTheImage) {
-  EXPECT_THAT(refusal("    mask_runs: \"100 40\"\n"), HasSubstr("tells of 140 pixels, the camera has 43200"));
+  EXPECT_THAT(refusal("    mask_runs: \"100 40\"\n"), HasSubstr("describes 140 pixels, the camera has 43200"));
   EXPECT_THAT(refusal("    mask_runs: \"100 x\"\n"), HasSubstr("must be numbers of pixels that make up 240 x 180"));
   EXPECT_THAT(refusal("    mask_runs: \"43201\"\n"), HasSubstr("must be numbers of pixels"));
   EXPECT_THAT(refusal("    mask_runs: \"-1 5\"\n"), HasSubstr("must be numbers of pixels"));
   draw("mask.png");
-  EXPECT_THAT(refusal("    mask: mask.png\n    mask_runs: \"43200\"\n"), HasSubstr("cannot stand beside mask"));
+  EXPECT_THAT(refusal("    mask: mask.png\n    mask_runs: \"43200\"\n"), HasSubstr("cannot be combined with mask"));
   EXPECT_THAT(input_error([&] { load_calibration(calibration("", "    mask: mask.png\n")); }),
-              HasSubstr("cannot stand beside same_as"));
+              HasSubstr("cannot be combined with same_as"));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ Sees read_modality(const YamlReader& value) {
 Lens read_base(const YamlReader& node, const YamlReader& same_as, const std::vector<Lens>& above) {
   for (const char* key : {"resolution", "intrinsics", "distortion", "coefficients", "max_angle", "T_B_C", "T_C_B",
                           "q_B_C", "time_offset", "mask", "mask_runs"})
-    if (const auto extra = node.find(key)) extra->fail("cannot stand beside same_as");
+    if (const auto extra = node.find(key)) extra->fail("cannot be combined with same_as");
   const std::string name = same_as.text();
   const auto base = std::ranges::find(above, name, &Lens::name);
   if (base == above.end()) same_as.fail("must name a camera above; there is no " + name);
@@ -84,7 +84,7 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   lens.model = read_model(node, "distortion", "coefficients");
   const CameraModel& model = lens.model;
   const auto mask = node.find("mask"), runs = node.find("mask_runs");
-  if (mask && runs) runs->fail("cannot stand beside mask");
+  if (mask && runs) runs->fail("cannot be combined with mask");
   if (const auto angle = node.find("max_angle")) {
     const double limit = angle->number() * kDegree;
     lens.model = changed(*angle, [&] { return model.within(limit); });

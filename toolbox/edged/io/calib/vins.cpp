@@ -117,10 +117,10 @@ CalibrationFile read_vins(const YamlReader& root) {
     out.lenses.push_back(std::move(lens));
   }
   if (out.has_extrinsics && root.text_or("estimate_extrinsic", "0") == "2")
-    root.at("estimate_extrinsic").warn("the extrinsics of this file are a guess that VINS replaces by its own");
+    root.at("estimate_extrinsic").warn("the extrinsics of this file are an initial guess that VINS refines");
   if (root.find("acc_n"))
     root.at("acc_n").warn(
-        "the IMU noise of VINS files is tuned for its own integration and is no density: not used; give --imu FILE "
+        "the IMU noise of VINS files is tuned for its own integration and is not a density: not used; give --imu FILE "
         "with "
         "the densities of a Kalibr imu.yaml");
   return out;

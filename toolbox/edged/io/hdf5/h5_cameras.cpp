@@ -82,8 +82,8 @@ void add_event_cameras(H5Cameras& cameras, const H5File& main, const Hdf5Layout&
     const H5File file(path);
     auto events = H5Events::find(file, layout, camera);
     if (!events)
-      throw InputError::format("{}: has no events as {} has them; leave it out with --set cameras={}", path.string(),
-                               main.path().filename().string(), cameras.known.front().name);
+      throw InputError::format("{}: has no events in the layout of {}; leave it out with --set cameras={}",
+                               path.string(), main.path().filename().string(), cameras.known.front().name);
     if (file.cut()) cameras.cut.push_back(path);
     auto stated = options.geometry ? options.geometry : stated_sensor(file, layout, camera);
     if (!stated) stated = usual_sensor;

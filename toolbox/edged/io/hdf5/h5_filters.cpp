@@ -22,7 +22,7 @@ thread_local std::size_t chunk_bytes_read = 0;  // 0 outside a scope
 Bytes undo_blosc(ByteSpan packed, std::size_t max_bytes) {
   std::size_t bytes = 0;
   if (blosc_cbuffer_validate(packed.data(), packed.size(), &bytes) != 0 || bytes > max_bytes)
-    throw Damage("no chunk of Blosc");
+    throw Damage("not a chunk of Blosc");
   Bytes out(bytes);
   if (blosc_decompress_ctx(packed.data(), out.data(), out.size(), 1) != static_cast<int>(bytes))
     throw Damage("Blosc cannot unpack a chunk");

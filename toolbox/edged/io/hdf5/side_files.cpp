@@ -252,7 +252,7 @@ Trajectory read_poses(const H5Array& poses, const H5Stamps& stamps, bool inverse
         const auto T = columns == 7 ? pose_of_seven(v) : pose_of_matrix(v);
         const bool late = !read.empty() && t[i] <= read.back().t;
         if (!T || t[i] == Timestamp::min() || late)
-          bad("bad pose", fmt::format("pose {} is no pose, or its stamp is not after the one before", at + i));
+          bad("bad pose", fmt::format("pose {} is invalid, or its stamp is not after the one before", at + i));
         else
           read.push_back({t[i], inverse ? T->inverse() : *T});
       }

@@ -94,7 +94,7 @@ std::string doubt_of_scalar(const RowSample& sample, bool scalar_first) {
   const std::vector<double>& row = sample.rows.front();
   const std::size_t scalar = scalar_first ? 4 : 7, other = 11 - scalar;
   if (!(std::abs(row[other]) > kNearOne && std::abs(row[scalar]) < 0.1)) return "";
-  return fmt::format("the first pose would be a turn of 180 deg, and with the scalar {} nearly none",
+  return fmt::format("the first pose would be rotated by 180 deg, and with the scalar {} hardly at all",
                      scalar_first ? "last" : "first");
 }
 

@@ -25,7 +25,8 @@ void LineDamage::bad(std::size_t line, const std::string& kind, const std::strin
   mended(line, kind, detail);
   if (++bad_ == 1) first_ = fmt::format("{}:{}: {}", file_, line, detail);
   if (bad_ > kMaxBadLines && bad_ > line / kMaxBadShare)
-    throw InputError::format("{}; {} of the first {} lines are damaged: mend or replace the file", first_, bad_, line);
+    throw InputError::format("{}; {} of the first {} lines are damaged: repair or replace the file", first_, bad_,
+                             line);
 }
 
 void LineDamage::mended(std::size_t line, const std::string& kind, const std::string& detail) {

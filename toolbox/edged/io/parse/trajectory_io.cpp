@@ -52,7 +52,7 @@ ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   const Eigen::Matrix3d R = T.leftCols<3>();
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (deviation > kPrintedRotationTolerance || R.determinant() < 0)
-    return {std::nullopt, fmt::format("no rotation matrix (deviation {:.2g})", deviation)};
+    return {std::nullopt, fmt::format("not a rotation matrix (deviation {:.2g})", deviation)};
   return {StampedPose{Timestamp(std::chrono::seconds(index)), SE3(R, T.col(3))}, ""};
 }
 

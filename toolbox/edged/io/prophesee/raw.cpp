@@ -247,7 +247,7 @@ class EvtFileWriter final : public RecordingWriter {
     for (const Event& event : events) {
       if (last_ && event.t - *last_ > kLongest)
         throw InputError::format(
-            "{}: no events from {} to {} s: DAT cannot hold a silence of more than {:.0f} minutes; take raw", name_,
+            "{}: no events from {} to {} s: DAT cannot hold a gap of more than {:.0f} minutes; take raw", name_,
             format_seconds(*last_), format_seconds(event.t), to_seconds(kLongest) / 60);
       last_ = event.t;
     }

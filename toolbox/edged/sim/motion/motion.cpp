@@ -185,8 +185,7 @@ Trajectory recorded_poses(const MotionConfig& config, double duration_s) {
   const Timestamp end = begin + duration_from_seconds(duration_s);
   if (all.back().t < end)
     throw InputError::format(
-        "{}: ends {:.3f} s after its first pose, but {:.3f} s are wanted; lower duration_s or "
-        "motion.start_s",
+        "{}: ends {:.3f} s after its first pose, but {:.3f} s are needed; lower duration_s or motion.start_s",
         config.file, to_seconds(all.back().t - all.front().t), config.start_s + duration_s);
   Trajectory poses;
   for (const StampedPose& pose : all)
@@ -227,7 +226,7 @@ void MotionConfig::visit(ConfigFields& fields) {
        {"pan", MotionStyle::Pan}},
       {.effect = "random motion to all sides, to and from what is in view, up and down, or turning on a tripod"});
   fields.add("lever_m", lever_m, {"m", -1, 1, "of a pan: distance of the camera before the axes about which it turns"});
-  fields.add("pause_s", pause_s, {"s", 0, 1e3, "random motion: it stops for so long again and again; 0: never"});
+  fields.add("pause_s", pause_s, {"s", 0, 1e3, "random motion: it stops for so long from time to time; 0: never"});
   fields.add("go_s", go_s, {"s", 0.1, 1e3, "random motion: time from the end of a pause to the next"});
   fields.add(
       "tremor_mm", tremor_mm,

@@ -16,8 +16,8 @@ namespace edged {
 /// USLAM, basalt, VECtor, ROS camera_info, DV, Metavision. docs/calibration.md has the table: how each is recognised,
 /// which way its transforms point, what a folder is searched for, and how a camera is found to see events, frames or
 /// both. A lens that gives both becomes two cameras, `events` and `frames`. Throws InputError for unknown content, a
-/// rotation that is not orthonormal to 1e-3 or mirrored, impossible intrinsics, and a camera of which nothing tells
-/// what it sees. Logs Calibration::warnings.
+/// rotation that is not orthonormal to 1e-3 or mirrored, impossible intrinsics, and a camera whose modality nothing
+/// shows. Logs Calibration::warnings.
 Calibration load_calibration(const std::filesystem::path& path, const CalibrationOptions& options = {});
 
 /// A rig by name (core/resources.hpp: rigs/NAME.yaml), or by path. Throws InputError that lists the rigs there are.

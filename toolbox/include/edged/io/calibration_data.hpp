@@ -36,9 +36,9 @@ std::optional<Sees> parse_sees(std::string_view text);
 
 struct CalibrationOptions {
   std::filesystem::path imu_file = {};  ///< Kalibr imu yaml, instead of what the calibration says of the IMU
-  /// By the camera's name in the file: where the file does not tell, or is wrong.
+  /// By the camera's name in the file: where the file does not state it, or is wrong.
   std::map<std::string, Sees> sees = {};
-  std::optional<Sees> otherwise = {};  ///< where nothing tells; not given: an error that asks
+  std::optional<Sees> otherwise = {};  ///< where nothing shows it; not given: an error that asks
 };
 
 /// Our own yaml; load_calibration gives back the same numbers to the last bit (rotations to rounding). Where only

@@ -23,7 +23,7 @@ struct Recording {
   std::optional<Calibration> calibration;
 };
 
-/// What the user may say of a recording that it does not tell itself, or not clearly.
+/// What the user may say of a recording that it does not contain, or not clearly.
 struct RecordingOptions {
   std::optional<cv::Size> geometry = std::nullopt;  ///< size of the event sensor [px], for files that do not hold it
   std::optional<TimeUnit> time_unit =

@@ -189,7 +189,7 @@ struct ExternalModelConfig {
 
 /// What goes wrong. Of the sensors: LensCovered, FramesMissing, EventsMissing, ImuGap and EventStorm (noise on the
 /// whole array). Of the scene: LightsOff, Person (walks past right before the camera), Walkers (two people cross the
-/// view again and again), WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the
+/// view repeatedly), WanderingLamp and SwitchingLamp (a spot of light far brighter than the rest moves over the
 /// scene; the latter's also goes on and off), BlankWall (half of the room is painted white and bare, and the camera
 /// turns round to it) and Flicker (lamps on mains or with PWM, FlickerConfig). Of the motion: GyroSaturation (a turn
 /// beyond the gyro's range and back), Shake, PureRotation, Standstill and PutDown (a standstill that begins and ends

@@ -322,7 +322,7 @@ TEST(SplitBag, BagsOfOtherTimesAreRecordingsOfTheirOwn) {
 TEST(BagFolder, ACompressedFileThatIsNoBagIsRefused) {
   TempFolder folder;
   const fs::path file = folder.write("a.zst", compress("zstd", "anything"));
-  EXPECT_THAT(input_error([&] { open_recording(file); }), HasSubstr("no ROS bag"));
+  EXPECT_THAT(input_error([&] { open_recording(file); }), HasSubstr("not a ROS bag"));
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ TEST(CutRecording, ThatIsCutWhileItIsReadEndsWithAnError) {
     const fs::path file = write_bag(folder, container, bag.topics);
     const Recording recording = open_recording(file);
     fs::resize_file(file, fs::file_size(file) / 2);
-    EXPECT_THAT(input_error([&] { read_all(*recording.dataset); }), HasSubstr("was cut while it was read"));
+    EXPECT_THAT(input_error([&] { read_all(*recording.dataset); }), HasSubstr("was truncated while it was read"));
   }
 }
 
@@ -258,7 +258,7 @@ TEST(BagParts, OneThatCannotBeReadIsCountedByItsOwnNameAndTheOthersAreRead) {
   EXPECT_GT(read_all(*recording.dataset).events.size(), bag.events.size() / 2);
   EXPECT_EQ(recording.dataset->repairs().at("bag: part unreadable"), 1u);
   for (const fs::path& file : files) fs::resize_file(file, 40);
-  EXPECT_THAT(input_error([&] { open_recording(folder.path() / "rec"); }), HasSubstr("rec_0.db3.zstd: no ROS bag"));
+  EXPECT_THAT(input_error([&] { open_recording(folder.path() / "rec"); }), HasSubstr("rec_0.db3.zstd: not a ROS bag"));
 }
 
 }  // namespace

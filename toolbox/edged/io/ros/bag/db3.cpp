@@ -91,7 +91,7 @@ class Db3 final : public MessageSource {
     const Statement tables =
         prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')");
     if (!step(tables.get()) || sqlite3_column_int(tables.get(), 0) != 2)
-      throw InputError::format("{}: no ROS 2 bag: lacks the tables `topics` and `messages`", name_);
+      throw InputError::format("{}: not a ROS 2 bag: it lacks the tables `topics` and `messages`", name_);
     const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
     while (step(topics.get())) {
       if (column_text(topics.get(), 3) != "cdr") continue;
@@ -119,7 +119,7 @@ class Db3 final : public MessageSource {
   Statement prepare(const char* query) {
     sqlite3_stmt* statement = nullptr;
     if (sqlite3_prepare_v2(database_.get(), query, -1, &statement, nullptr) != SQLITE_OK)
-      throw InputError::format("{}: no ROS 2 bag, or damaged ({})", name_, sqlite3_errmsg(database_.get()));
+      throw InputError::format("{}: not a ROS 2 bag, or damaged ({})", name_, sqlite3_errmsg(database_.get()));
     return Statement(statement);
   }
 

@@ -78,7 +78,7 @@ std::unique_ptr<MessageSource> open_container(const BagFile& file, Repairs* repa
     case Container::None:
       break;
   }
-  throw InputError::format("{}: no ROS bag, or its beginning is damaged", file.name);
+  throw InputError::format("{}: not a ROS bag, or its beginning is damaged", file.name);
 }
 
 std::unique_ptr<MessageSource> open_part(const fs::path& file, Repairs* repairs) {
