@@ -41,7 +41,7 @@ struct ImuSample {
   Eigen::Vector3d gyro_B = Eigen::Vector3d::Zero();   ///< angular velocity [rad/s]
   Eigen::Vector3d accel_B = Eigen::Vector3d::Zero();  ///< specific force [m/s^2], about +9.81 upwards at rest
   bool interpolated = false;                          ///< interpolated where the recording has a gap
-  bool gyro_clipped = false, accel_clipped = false;   ///< at the end of a range that the calibration does not tell
+  bool gyro_clipped = false, accel_clipped = false;   ///< at the end of a range that the calibration does not state
 };
 
 /// The height of the body above a level that drifts slowly: a barometer, or a range finder above flat ground.

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """Names keep to docs/glossary.md: no private word in public headers, Python module, options, columns and metrics, no private name in the
-sources of the method; every public type is named there or contains a term of it. Environment: EDGED, the program (without it options are read from the sources)."""
+sources of the method, no odd phrase in messages and pages; every public type is named there or contains a term of it. Environment: EDGED, the program (without it options are read from the sources)."""
 import json
 import os
 import pathlib
@@ -41,6 +41,7 @@ TERMS = [words_of(row[0]) for row in ALL_TERMS]
 # word -> what may contain it
 FORBIDDEN = {word: [words_of(part) for part in use.split(";")]
              for cell, use in TABLES["Forbidden words"] for word in re.findall("`(.+?)`", cell)}
+ODD_PHRASES = [phrase for cell, _ in TABLES["Forbidden phrases"] for phrase in re.findall("`(.+?)`", cell)]
 FORBIDDEN_NAMES = {name for cell, _ in TABLES["Forbidden identifiers"] for name in re.findall("`(.+?)`", cell)}
 
 
@@ -54,6 +55,17 @@ def private_words_in(text):
         if f" {word} " in rest:
             found.append(word)
     return found
+
+
+def odd_phrases_in(text):
+    text = " ".join(text.lower().split())
+    return [phrase for phrase in ODD_PHRASES if re.search(rf"(?<!\w){re.escape(phrase)}(?!\w)", text)]
+
+
+def literals_of(text):
+    """The string literals of C++, those joined that follow one another."""
+    parts = re.findall(r"""//.*|'\\?.'|"((?:\\.|[^"\\\n])*)"(\s*(?="))?""", text)
+    return "".join(part if follows else f"{part}\n" for part, follows in parts).replace("\\n", "\n")
 
 
 def split_source(text):
@@ -98,6 +110,28 @@ class Glossary(unittest.TestCase):
         self.assertEqual(private_words_in("the place was found again."), ["found again"])
         self.assertEqual(private_words_in("oversight, insights, withdrawn"), [])
 
+    def test_odd_phrases_are_found_in_sentences(self):
+        self.assertGreater(len(ODD_PHRASES), 25)
+        self.assertEqual(odd_phrases_in("3 ms By its\nturning"), ["by its turning"])
+        self.assertEqual(odd_phrases_in("a recommendation; it begins at the origin"), [])
+        self.assertEqual(odd_phrases_in(literals_of('say("a bug "\n    "of ours");  // "mend"')), ["a bug of ours"])
+
+    def test_messages_have_no_odd_phrases(self):
+        sources = [path for folder in ("apps", "src", "toolbox", "ros", "python") for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
+                   if not path.name.endswith("_test.cpp") and "tests" not in path.parts]
+        self.assertGreater(len(sources), 300)
+        for path in sources:
+            with self.subTest(where=str(path.relative_to(ROOT))):
+                self.assertEqual(odd_phrases_in(literals_of(path.read_text())), [])
+
+    def test_pages_and_scripts_have_no_odd_phrases(self):
+        scripts = [path for folder in ("ros", "python") for path in (ROOT / folder).rglob("*.py*") if path.suffix in (".py", ".pyi")]
+        pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "apps/report/page").iterdir()]
+        for path in sorted([*pages, *scripts, ROOT / "apps/calib/template.yaml"]):
+            if path.name != "glossary.md" and "tests" not in path.parts:
+                with self.subTest(where=str(path.relative_to(ROOT))):
+                    self.assertEqual(odd_phrases_in(path.read_text()), [])
+
     def test_public_headers_use_standard_terms(self):
         self.assertGreater(len(HEADERS), 9)
         for header in HEADERS:
@@ -105,6 +139,7 @@ class Glossary(unittest.TestCase):
             self.assert_public([header.name.split(".")[0], *re.findall(r"[A-Za-z_]\w*", code)], header.name)
             with self.subTest(where=header.name, what="comments"):
                 self.assertEqual(private_words_in(comments), [])
+                self.assertEqual(odd_phrases_in(comments), [])
 
     def test_comments_of_the_library_use_standard_terms(self):
         for path in sorted((ROOT / "src").rglob("*.[ch]pp")):

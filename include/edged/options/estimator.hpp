@@ -33,7 +33,7 @@ struct CalibrationConfig {
 /// How errors along a track correlate. KLT tracks a feature from image to image: its drift persists. Of
 /// two observations dt apart the errors correlate by correlation * exp(-dt / 2 s): a first-order Gauss-Markov
 /// process, plus an independent error of each image. An event frame has a larger independent part, as it is rendered
-/// anew each time. The larger the assumed drift, the larger the weight of slow motion.
+/// again each time. The larger the assumed drift, the larger the weight of slow motion.
 struct TrackNoise {
   double correlation = 0.95;  ///< on frames
   double event_correlation = 0.8;
