@@ -14,6 +14,7 @@
 #include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
+#include "common/reading.hpp"
 #include "edged/checks/statistics/allan_deviation.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"

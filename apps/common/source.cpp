@@ -13,7 +13,7 @@
 
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
-#include "common/status_line.hpp"
+#include "common/log.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
@@ -68,6 +68,7 @@ RecordingOptions recording_options(const SourceOptions& options, const std::opti
   chosen.all_cameras = options.all_cameras && options.cameras.empty();
   if (calibration) chosen.camera_topics = calibration->topics;
   chosen.own_imu = options.imu.empty();
+  chosen.imu_has_own_clock = !options.imu_time_offset.empty();
   chosen.interrupted = [] { return interrupt_signal() != 0; };
   if (!options.time_unit.empty()) chosen.time_unit = parse_time_unit(options.time_unit);
   chosen.topics = wanted_topics(options.topics);
@@ -95,7 +96,8 @@ Recording open_whole(const SourceOptions& options) {
 /// Adds the sensor files that the user gave.
 Recording open_with_files(const SourceOptions& options) {
   Recording recording = open_whole(options);
-  if (!options.imu.empty()) recording.dataset = with_imu_file(std::move(recording.dataset), options.imu);
+  if (!options.imu.empty())
+    recording.dataset = with_imu_file(std::move(recording.dataset), options.imu, !options.imu_time_offset.empty());
   if (!options.truth.empty()) recording.dataset = with_truth_file(std::move(recording.dataset), options.truth);
   for (const auto& [name, file] : options.external)
     if (!file.empty())
@@ -103,7 +105,30 @@ Recording open_with_files(const SourceOptions& options) {
   return recording;
 }
 
+/// open_with_files() once more, without its warnings.
+Recording open_again(const SourceOptions& options) {
+  HeldWarnings said;
+  Recording recording = open_with_files(options);
+  said.take();
+  return recording;
+}
+
+ChosenImuClock chosen_imu_clock(const SourceOptions& options) {
+  const double rate = options.imu_clock_rate;
+  const auto seconds = options.imu_time_offset.empty() ? 0.0 : given_imu_offset_s(options.imu_time_offset);
+  if (seconds) return {{duration_from_seconds(*seconds), rate}, std::nullopt};
+  if (const auto known = found_imu_clock(options)) return *known;
+  const ChosenImuClock found = determine_imu_clock([&] { return open_again(options); }, rate);
+  if (found.found) options.found_clocks->insert({options.recording, found});
+  return found;
+}
+
 }  // namespace
+
+std::optional<ChosenImuClock> found_imu_clock(const SourceOptions& options) {
+  const auto found = options.found_clocks->find(options.recording);
+  return found == options.found_clocks->end() ? std::nullopt : std::optional(found->second);
+}
 
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
   if (!options.recording.starts_with(kSimulatorPrefix)) return std::nullopt;
@@ -115,11 +140,13 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
 }
 
 Recording open_uncalibrated(const SourceOptions& options) {
+  const bool other_clock = options.imu_clock_rate != 1.0 || !options.imu_time_offset.empty();
+  if (other_clock && is_live(options))
+    throw InputError("--imu-clock-rate and --imu-time-offset: a live source can be read once only");
   Recording recording = open_with_files(options);
-  if (options.imu_clock_rate != 1.0) {
-    if (is_live(options)) throw InputError("--imu-clock-rate: a live source can be read once only");
-    recording.dataset =
-        with_imu_clock_rate(std::move(recording.dataset), open_with_files(options).dataset, options.imu_clock_rate);
+  if (other_clock) {
+    const ImuClock clock = chosen_imu_clock(options).clock;
+    recording.dataset = with_imu_clock(std::move(recording.dataset), open_again(options).dataset, clock);
   }
   PieceBounds piece = options.piece;
   if (options.duration_s) piece.to_s = piece.from_s + *options.duration_s;
@@ -185,16 +212,6 @@ double later_start_s(double start_s) { return std::floor(10.0 * start_s) / 10.0;
 Finding cameras_start_later(double start_s) {
   return {Severity::Error, fmt::format("cameras start at {:.1f} s", start_s),
           fmt::format("use --start {:g}", later_start_s(start_s))};
-}
-
-void read_through(Dataset& dataset, bool quiet, std::string_view what,
-                  const std::function<bool(const Measurement&)>& use) {
-  StatusLine status(quiet);
-  InterruptibleDataset recording(dataset);
-  while (const std::optional<Measurement> measurement = recording.next()) {
-    if (!use(*measurement)) return;
-    if (const auto t = last_stamp(*measurement)) show_progress(status, *t, dataset.info(), what);
-  }
 }
 
 void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted) {

@@ -5,15 +5,14 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "common/cli.hpp"
+#include "common/imu_clock.hpp"
 #include "edged/checks/finding.hpp"
 #include "edged/core/measurements/recording_piece.hpp"
 #include "edged/dataset.hpp"
@@ -30,6 +29,10 @@ struct SourceOptions {
   std::filesystem::path imu;         ///< file with IMU samples; "" if not given
   std::filesystem::path truth = {};  ///< file with the ground truth; "" if not given
   double imu_clock_rate = 1.0;       ///< seconds of the IMU clock per second of the other sensors
+  std::string imu_time_offset;       ///< seconds to add to the stamps of the IMU, or "auto"; "" if not given
+  /// What "auto" has found, by recording: it may be opened several times.
+  std::shared_ptr<std::map<std::string, ChosenImuClock>> found_clocks =
+      std::make_shared<std::map<std::string, ChosenImuClock>>();
   std::map<std::string, std::filesystem::path> external = {};  ///< files of external sensors, by their names
   std::string geometry;                                        ///< "WIDTHxHEIGHT" of the event sensor; "" if not given
   std::string time_unit;                  ///< of plain event files: "s", "ms", "us" or "ns"; "" if not given
@@ -58,8 +61,9 @@ struct Source {
 /// unknown preset or option.
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
-/// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --topic, --from (also --start), --to, --duration and
-/// --dim-frames.
+/// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --imu-time-offset, --topic, --from (also --start),
+/// --to,
+/// --duration and --dim-frames.
 void add_reading_options(CLI::App& command, SourceOptions& options);
 
 /// Adds RECORDING, --imu, a flag for each external sensor, and the options of add_reading_options().
@@ -71,6 +75,9 @@ void add_cameras_option(CLI::App& command, SourceOptions& options, bool all = tr
 /// Opens the recording with the chosen calibration, else with that of the recording, if any. Throws InputError if it
 /// cannot be opened.
 Recording open_uncalibrated(const SourceOptions& options);
+
+/// What --imu-time-offset auto has found in the recording, which is open.
+std::optional<ChosenImuClock> found_imu_clock(const SourceOptions& options);
 
 /// True for a live source, of which a slow reader loses data.
 bool is_live(const SourceOptions& options);
@@ -93,11 +100,6 @@ std::optional<double> cameras_start_after_s(const SourceOptions& options);
 /// The finding for cameras that start late, and the time at which a run should start [s].
 Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
-
-/// Passes each measurement to `use` until that returns false, the recording ends, or the user interrupts, with the
-/// progress in a status line: "12.3 / 60.0 s WHAT".
-void read_through(Dataset& dataset, bool quiet, std::string_view what,
-                  const std::function<bool(const Measurement&)>& use);
 
 /// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
 /// InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the calibration has.

@@ -26,6 +26,10 @@ void add_reading_options(CLI::App& command, SourceOptions& options) {
                   "Speed of the IMU's clock relative to the other clocks, as `edged doctor` reports: its stamps are "
                   "corrected from the first one on")
       ->check(CLI::Range(0.1, 10.0));
+  command.add_option(
+      "--imu-time-offset", options.imu_time_offset,
+      "Seconds to add to all stamps of the IMU, which has an epoch of its own, -4e9 to 4e9, or auto: found, with its "
+      "drift, by the rotation of camera and gyro in the whole recording, which is read once more [none]");
   command
       .add_option(
           "--topic", options.topics,
@@ -86,6 +90,7 @@ std::string command_line(const std::string& command, const SourceOptions& source
   add("--calib", source.calib.string());
   add("--imu", source.imu.string());
   if (source.imu_clock_rate != 1.0) add("--imu-clock-rate", fmt::format("{}", source.imu_clock_rate));
+  add("--imu-time-offset", source.imu_time_offset);
   for (const auto& [name, file] : source.external) add("--" + name, file.string());
   add("--geometry", source.geometry);
   add("--time-unit", source.time_unit);

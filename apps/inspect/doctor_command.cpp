@@ -13,6 +13,7 @@
 #include "common/findings.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
+#include "common/reading.hpp"
 #include "edged/checks/recording_check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "inspect/survey.hpp"
@@ -25,28 +26,10 @@ struct DoctorOptions {
   bool quiet = false, json = false;
 };
 
-/// The recorded cameras that the calibration has: those of the same name, and of each kind its first for the first.
-std::vector<RigCamera> cameras_to_check(const Recording& recording) {
-  std::vector<RigCamera> cameras;
-  const DatasetInfo& info = recording.dataset->info();
-  if (!info.has_imu) return cameras;
-  const Rig& rig = recording.calibration->rig;
-  for (const RecordedCamera& recorded : recorded_cameras(info)) {
-    const auto named = std::ranges::find(rig.cameras, recorded.name, &RigCamera::name);
-    const bool known = named != rig.cameras.end() && named->modality == recorded.modality;
-    const bool first = recorded.name == info.event_camera || recorded.name == info.frame_camera;
-    const RigCamera* camera = known ? &*named : first ? rig.find(recorded.modality) : nullptr;
-    if (!camera) continue;
-    cameras.push_back(*camera);
-    cameras.back().name = recorded.name;
-  }
-  return cameras;
-}
-
 std::optional<CheckedCalibration> calibration_to_check(const Recording& recording) {
   const auto& given = recording.calibration;
   if (!given) return std::nullopt;
-  return CheckedCalibration{cameras_to_check(recording), given->has_extrinsics, given->known_noise()};
+  return CheckedCalibration{calibrated_cameras(recording), given->has_extrinsics, given->known_noise()};
 }
 
 /// Warnings while reading are findings, too: the summary contains everything that is printed.
@@ -76,6 +59,11 @@ int run_doctor(const DoctorOptions& options) {
   std::vector<Finding> findings = check.findings(*recording.dataset, read.truth);
   if (!has_pictures)
     if (const auto start_s = cameras_start_after_s(options.source)) findings = {cameras_start_later(*start_s)};
+  if (const auto clock = found_imu_clock(options.source))
+    findings.push_back(
+        {Severity::Note,
+         fmt::format("IMU clock: {} were added to its stamps, {}", offset_text(*clock), offset_evidence(*clock->found)),
+         ""});
   add_log(held.take(), findings);
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});

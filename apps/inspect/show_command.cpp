@@ -14,6 +14,7 @@
 #include "common/command.hpp"
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
+#include "common/reading.hpp"
 #include "common/source.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"

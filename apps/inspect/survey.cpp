@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "common/json_text.hpp"
+#include "common/reading.hpp"
 #include "common/source.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"

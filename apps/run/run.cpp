@@ -42,6 +42,7 @@ RunSummary begin_summary(const RunContext& run) {
   summary.resources = {run.meter.wall_s(), run.meter.cpu_s()};
   summary.statistics = run.statistics;
   summary.repairs = run.source.dataset->repairs();
+  summary.imu_clock = found_imu_clock(run.options.source);
   return summary;
 }
 
@@ -99,6 +100,9 @@ void Run::make_folder(const std::vector<RunOutput>& outputs) {
   const DatasetInfo& info = run_.info();
   spdlog::info(fmt::format("edged {}: {} ({}), mode {}", kVersion, info.name, info.format, mode_name(run_.mode)));
   spdlog::info(describe(run_.source.calibration));
+  if (const auto clock = found_imu_clock(run_.options.source))
+    spdlog::info(
+        fmt::format("IMU clock: {} added to its stamps, {}", offset_text(*clock), offset_evidence(*clock->found)));
   if (!truth_.problem.empty())
     spdlog::warn(fmt::format("the ground truth cannot be read, so nothing is compared with it: {}", truth_.problem));
 }

@@ -122,6 +122,18 @@ void add_calibration(Figures& out, const std::vector<CalibrationFound>& calibrat
   }
 }
 
+/// What was done to the stamps of the IMU.
+void add_imu_clock(Figures& out, const ChosenImuClock& chosen) {
+  const ImuOffset& found = *chosen.found;
+  out.json["imu_clock"] = {{"offset_s", to_seconds(chosen.clock.offset)},
+                           {"rate", chosen.clock.rate},
+                           {"offset_sigma_s", found.sigma_s},
+                           {"rate_sigma", number_or_null(found.rate_sigma)},
+                           {"correlation", found.match->correlation},
+                           {"next_correlation", found.match->next_correlation}};
+  out.line("IMU clock", offset_text(chosen), "added to its stamps, " + offset_evidence(found));
+}
+
 void add_progress(Figures& out, const RunStatistics& s) {
   out.json.update({{"poses", s.poses()},
                    {"keyframes", s.keyframes()},
@@ -204,6 +216,7 @@ Figures figures_of(const RunSummary& s) {
   add_identity(out, s);
   add_accuracy(out, s.truth);
   add_calibration(out, s.calibration);
+  if (s.imu_clock) add_imu_clock(out, *s.imu_clock);
   add_progress(out, s.statistics);
   add_resources(out, s.resources, s.statistics.visual_span_s());
   add_depth_scale(out, s.statistics.ln_depth_scale());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/imu_clock.hpp"
 #include "edged/checks/calibration_fit.hpp"
 #include "edged/counters.hpp"
 #include "edged/dataset.hpp"
@@ -81,6 +82,7 @@ struct RunSummary {
   RunResources resources;
   TruthComparison truth;
   std::vector<CalibrationFound> calibration;
+  std::optional<ChosenImuClock> imu_clock;     ///< of --imu-time-offset auto
   std::map<std::string, std::size_t> repairs;  ///< by the reader and the packetizer, zero counts left out
   Figures outputs;                             ///< what the outputs of the run add
   std::optional<LiveSummary> live;

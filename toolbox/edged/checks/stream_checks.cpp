@@ -47,7 +47,8 @@ void check_overlap(const CheckInput& input, Findings& out) {
   const double common = to_seconds(s.overlap()), least = to_seconds(shortest);
   if (common < 0.0)
     out.error("the clocks of the sensors do not overlap: " + all,
-              "stamp all sensors on one clock when recording: the online calibration corrects milliseconds only");
+              "--imu-time-offset auto finds the IMU's by the rotation; otherwise stamp all sensors on one clock when "
+              "recording");
   else if (common < std::max(0.9 * least, least - kMostLeftOut_s) || beyond_imu_s(s) > kMostLeftOut_s)
     out.warn(fmt::format("all sensors together cover {:.1f} s only: {}", common, all),
              "the time that only some of them cover is not used; check that all were recorded");

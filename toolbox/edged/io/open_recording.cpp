@@ -171,7 +171,7 @@ Recording open_single_file_folder(const SourcePath& folder, const std::string& f
   const auto imu = recording.dataset->info().has_imu || !options.own_imu ? std::nullopt : find_imu_beside(folder, read);
   if (imu) {
     try {
-      recording.dataset = with_imu_file(std::move(recording.dataset), *imu);
+      recording.dataset = with_imu_file(std::move(recording.dataset), *imu, options.imu_has_own_clock);
       read.insert(imu->name());
     } catch (const InputError& e) {
       spdlog::warn(e.what());

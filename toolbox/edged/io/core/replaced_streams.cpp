@@ -22,17 +22,30 @@ class WithTruth final : public WrappedDataset {
   GroundTruth truth_;
 };
 
-class WithImuClockRate final : public WithSamples {
+class WithImuClock final : public WithSamples {
  public:
-  WithImuClockRate(std::unique_ptr<Dataset> others, std::unique_ptr<Dataset> for_imu, double rate)
+  WithImuClock(std::unique_ptr<Dataset> others, std::unique_ptr<Dataset> for_imu, const ImuClock& clock)
       : WithSamples(std::move(others), [](const Measurement& m) { return std::holds_alternative<ImuSample>(m); }),
         imu_(std::move(for_imu)),
-        rate_(rate) {
+        clock_(clock),
+        info_(recording_->info()) {
     imu_->leave_out(Modality::Events);
     imu_->leave_out(Modality::Frames);
+    if (clock.offset != Duration(0)) move_begin();
   }
 
+  const DatasetInfo& info() const override { return info_; }
+
  private:
+  /// The first stamp was perhaps that of the IMU.
+  void move_begin() {
+    const Measurement* other = peek_recording();
+    std::optional<Timestamp> begin = other ? first_stamp(*other) : std::nullopt;
+    if (const auto sample = next_stamp()) begin = begin ? std::min(*begin, *sample) : *sample;
+    if (begin && info_.begin && info_.end) *info_.end += *begin - *info_.begin;
+    if (begin) info_.begin = begin;
+  }
+
   std::optional<Timestamp> next_stamp() override {
     while (!sample_) {
       const auto measurement = imu_->next();
@@ -41,7 +54,7 @@ class WithImuClockRate final : public WithSamples {
       if (sample == nullptr) continue;
       if (!first_) first_ = sample->t;
       sample_ = *sample;
-      sample_->t = *first_ + duration_from_seconds(to_seconds(sample->t - *first_) / rate_);
+      sample_->t = *first_ + clock_.offset + duration_from_seconds(to_seconds(sample->t - *first_) / clock_.rate);
     }
     return sample_->t;
   }
@@ -49,7 +62,8 @@ class WithImuClockRate final : public WithSamples {
   Measurement pop_sample() override { return *std::exchange(sample_, std::nullopt); }
 
   std::unique_ptr<Dataset> imu_;
-  double rate_;
+  ImuClock clock_;
+  DatasetInfo info_;
   std::optional<Timestamp> first_;
   std::optional<ImuSample> sample_;
 };
@@ -85,9 +99,9 @@ std::unique_ptr<Dataset> with_truth_file(std::unique_ptr<Dataset> recording, con
   return std::make_unique<WithTruth>(std::move(recording), read_trajectory(file));
 }
 
-std::unique_ptr<Dataset> with_imu_clock_rate(std::unique_ptr<Dataset> recording, std::unique_ptr<Dataset> for_imu,
-                                             double rate) {
-  return std::make_unique<WithImuClockRate>(std::move(recording), std::move(for_imu), rate);
+std::unique_ptr<Dataset> with_imu_clock(std::unique_ptr<Dataset> recording, std::unique_ptr<Dataset> for_imu,
+                                        const ImuClock& clock) {
+  return std::make_unique<WithImuClock>(std::move(recording), std::move(for_imu), clock);
 }
 
 }  // namespace edged

@@ -19,11 +19,17 @@ namespace edged {
 /// InputError as read_trajectory().
 std::unique_ptr<Dataset> with_truth_file(std::unique_ptr<Dataset> recording, const SourcePath& file);
 
-/// The recording with the stamps of its IMU corrected to the clock of the other sensors: t_first + (t - t_first) /
-/// rate. The recording is in the order of the wrong stamps, so it is read by two readers at the same time: one for the
-/// IMU, one for all else. for_imu: the same recording, opened once more.
-std::unique_ptr<Dataset> with_imu_clock_rate(std::unique_ptr<Dataset> recording, std::unique_ptr<Dataset> for_imu,
-                                             double rate);
+/// What an IMU's clock is relative to that of the other sensors: t = t_first + offset + (t_imu - t_first) / rate.
+struct ImuClock {
+  Duration offset{0};
+  double rate = 1.0;  ///< seconds of the IMU per second of the others
+};
+
+/// The recording with the stamps of its IMU corrected to the clock of the other sensors. The recording is in the order
+/// of the wrong stamps, so it is read by two readers at the same time: one for the IMU, one for all else. for_imu: the
+/// same recording, opened once more.
+std::unique_ptr<Dataset> with_imu_clock(std::unique_ptr<Dataset> recording, std::unique_ptr<Dataset> for_imu,
+                                        const ImuClock& clock);
 
 /// A recording that passes all on.
 class WrappedDataset : public Dataset {

@@ -23,14 +23,27 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::infinity();
 
-/// A recording with the samples of a text file. Both must be on one clock: throws InputError if they do not overlap.
+/// A recording with the samples of a text file.
 template <typename T>
 class WithTextSamples final : public WithSamples {
  public:
   WithTextSamples(std::unique_ptr<Dataset> recording, const typename StampedLines<T>::Spec& lines, DatasetInfo info,
                   Predicate replaced)
       : WithSamples(std::move(recording), std::move(replaced)), info_(std::move(info)), samples_(lines, text_repairs_) {
-    check_clock(lines);
+    if (!samples_.peek())
+      throw InputError::format("{}: holds no readable line; a line is `{}`", lines.file.string(), lines.layout);
+  }
+
+  /// Throws InputError if the two do not overlap. what_to_do: the end of the message.
+  void check_clock(const typename StampedLines<T>::Spec& lines, std::string_view what_to_do) {
+    if (const Measurement* other = info_.begin ? nullptr : peek_recording()) info_.begin = first_stamp(*other);
+    if (!info_.begin) return;
+    const std::optional<Timestamp> end = lines.last_stamp();
+    const Timestamp first = time_of(*samples_.peek());
+    if ((end && *end < *info_.begin) || (info_.end && first > *info_.end))
+      throw InputError::format("{}: is on another clock: it holds {} to {} s, the recording {} to {} s; {}",
+                               lines.file.string(), format_seconds(first), end ? format_seconds(*end) : "?",
+                               format_seconds(*info_.begin), info_.end ? format_seconds(*info_.end) : "?", what_to_do);
   }
 
   const DatasetInfo& info() const override { return info_; }
@@ -46,20 +59,6 @@ class WithTextSamples final : public WithSamples {
     return samples_.peek() ? std::optional(time_of(*samples_.peek())) : std::nullopt;
   }
   Measurement pop_sample() override { return samples_.pop(); }
-
-  void check_clock(const typename StampedLines<T>::Spec& lines) {
-    const T* first = samples_.peek();
-    if (!first)
-      throw InputError::format("{}: holds no readable line; a line is `{}`", lines.file.string(), lines.layout);
-    if (const Measurement* other = info_.begin ? nullptr : peek_recording()) info_.begin = first_stamp(*other);
-    if (!info_.begin) return;
-    const std::optional<Timestamp> end = lines.last_stamp();
-    if ((end && *end < *info_.begin) || (info_.end && time_of(*first) > *info_.end))
-      throw InputError::format(
-          "{}: is on another clock: it holds {} to {} s, the recording {} to {} s; shift the stamps of one of them",
-          lines.file.string(), format_seconds(time_of(*first)), end ? format_seconds(*end) : "?",
-          format_seconds(*info_.begin), info_.end ? format_seconds(*info_.end) : "?");
-  }
 
   DatasetInfo info_;
   Repairs text_repairs_;
@@ -220,16 +219,19 @@ void set_stream(DatasetInfo& info, const std::string& role, const SourcePath& fi
 
 }  // namespace
 
-std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file) {
+std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file, bool own_clock) {
   const TextTable table = find_imu_table(file);
   spdlog::log(table.guessed ? spdlog::level::warn : spdlog::level::info, "{}: {}", file.string(), table.said);
   DatasetInfo info = recording->info();
   if (info.has_imu) spdlog::warn(fmt::format("{}: its own IMU is left out for {}", info.name, file.string()));
   set_stream(info, "imu", file, table.said);
   info.has_imu = true;
-  return std::make_unique<WithTextSamples<ImuSample>>(
-      std::move(recording), imu_lines(file, table), std::move(info),
+  const auto lines = imu_lines(file, table);
+  auto joined = std::make_unique<WithTextSamples<ImuSample>>(
+      std::move(recording), lines, std::move(info),
       [](const Measurement& measurement) { return std::holds_alternative<ImuSample>(measurement); });
+  if (!own_clock) joined->check_clock(lines, "give --imu-time-offset auto, or the seconds to add to its stamps");
+  return joined;
 }
 
 std::unique_ptr<Dataset> with_external_file(std::unique_ptr<Dataset> recording, const ExternalSensor& sensor,
@@ -244,9 +246,12 @@ std::unique_ptr<Dataset> with_external_file(std::unique_ptr<Dataset> recording, 
   else
     info.external.push_back(name);
   set_stream(info, name, file, layout);
-  return std::make_unique<WithTextSamples<ExternalSample>>(
-      std::move(recording), StampedLines<ExternalSample>::Spec{file, name, layout, LastLine::MustEnd, parse},
-      std::move(info), [&sensor](const Measurement& measurement) { return is_sample_of(measurement, sensor); });
+  const StampedLines<ExternalSample>::Spec lines{file, name, layout, LastLine::MustEnd, parse};
+  auto joined = std::make_unique<WithTextSamples<ExternalSample>>(
+      std::move(recording), lines, std::move(info),
+      [&sensor](const Measurement& measurement) { return is_sample_of(measurement, sensor); });
+  joined->check_clock(lines, "shift the stamps of one of them");
+  return joined;
 }
 
 std::unique_ptr<Dataset> with_external_files(std::unique_ptr<Dataset> recording, const SourcePath& folder) {

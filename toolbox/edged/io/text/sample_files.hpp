@@ -13,9 +13,10 @@
 
 namespace edged {
 
-/// The recording, with its IMU samples, if any, replaced by those of the file. Both must be on one clock. Throws
-/// InputError, with both time spans, if they do not overlap, and as find_imu_table().
-std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file);
+/// The recording, with its IMU samples, if any, replaced by those of the file. Throws InputError, with both time spans,
+/// if they do not overlap, unless the file has a clock of its own, and as find_imu_table().
+std::unique_ptr<Dataset> with_imu_file(std::unique_ptr<Dataset> recording, const SourcePath& file,
+                                       bool own_clock = false);
 
 /// The recording, with the samples of that sensor replaced by those of the file. A line has the columns of
 /// `layout_of(sensor)`, or of a heading: columns in any order, units in brackets. The unit of stamps, if not named,

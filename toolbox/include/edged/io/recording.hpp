@@ -41,6 +41,8 @@ struct RecordingOptions {
   bool all_cameras = false;
   /// False: the IMU file of the recording is not opened, as the user gives another one.
   bool own_imu = true;
+  /// True: the IMU file beside the recording may be on another clock, which the caller corrects.
+  bool imu_has_own_clock = false;
 };
 
 }  // namespace edged

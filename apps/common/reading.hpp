@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+// What the commands do with a recording that is open.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "edged/dataset.hpp"
+#include "edged/io/recording.hpp"
+
+namespace edged {
+
+/// Passes each measurement to `use` until that returns false, the recording ends, or the user interrupts, with the
+/// progress in a status line: "12.3 / 60.0 s WHAT".
+void read_through(Dataset& dataset, bool quiet, std::string_view what,
+                  const std::function<bool(const Measurement&)>& use);
+
+/// The recorded cameras that the calibration has: those of the same name, and of each kind its first for the first.
+/// Without a recorded IMU none.
+std::vector<RigCamera> calibrated_cameras(const Recording& recording);
+
+}  // namespace edged
