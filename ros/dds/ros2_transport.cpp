@@ -71,19 +71,20 @@ void Ros2Transport::subscribe(const std::string& topic, Role role, Receive recei
       topic, qos, [role](const std::string& type) { return can_take(type, role); }, std::move(receive));
 }
 
-void Ros2Transport::subscribe_latched(const std::string& topic, const std::string& wanted, Receive receive) {
-  const Qos qos{.latched = true, .depth = kSamples};
+void Ros2Transport::subscribe_type(const std::string& topic, const std::string& wanted, bool latched, Receive receive) {
+  const Qos qos{.latched = latched, .depth = kSamples};
   add_subscription(
-      topic, qos, [wanted](const std::string& type) { return type == wanted; }, std::move(receive));
+      topic, qos, [wanted](const std::string& type) { return type == wanted; }, std::move(receive), !latched);
 }
 
 void Ros2Transport::add_subscription(const std::string& topic, const Qos& qos,
-                                     std::function<bool(const std::string&)> accepts, Receive receive) {
+                                     std::function<bool(const std::string&)> accepts, Receive receive,
+                                     bool only_while_published) {
   wanted_.push_back({topic, qos, std::move(accepts),
                      [receive = std::move(receive)](const std::string& type, ByteSpan cdr) {
                        receive({type, "", cdr});
                      },
-                     [this] { update_graph(); }});
+                     [this] { update_graph(); }, only_while_published});
 }
 
 void Ros2Transport::start() {

@@ -41,7 +41,7 @@ class Ros2Transport final : public node::Transport {
   /// Once all topics are subscribed and advertised. Throws InputError as Names.
   void check_remappings() const { names_.check_remappings(); }
   void subscribe(const std::string& topic, Role role, Receive receive) override;
-  void subscribe_latched(const std::string& topic, const std::string& type, Receive receive) override;
+  void subscribe_type(const std::string& topic, const std::string& type, bool latched, Receive receive) override;
   void start() override;
   void stop() override;
   bool ok() const override { return true; }
@@ -49,7 +49,7 @@ class Ros2Transport final : public node::Transport {
 
  private:
   void add_subscription(const std::string& topic, const Qos& qos, std::function<bool(const std::string&)> accepts,
-                        Receive receive);
+                        Receive receive, bool only_while_published = false);
   void update_graph();
   void note_clock(ByteSpan cdr);
 

@@ -69,8 +69,19 @@ void Subscription::discover() {
 }
 
 void Subscription::forget_publisher(dds_instance_handle_t publisher) {
+  std::string type;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto left = present_.find(publisher);
+    if (left == present_.end()) return;
+    type = left->second;
+    present_.erase(left);
+    const bool others = std::ranges::any_of(present_, [&type](const auto& one) { return one.second == type; });
+    if (others || !setup_.only_while_published) return;
+  }
+  receive_some();
   const std::lock_guard lock(mutex_);
-  present_.erase(publisher);
+  readers_.erase(type);
 }
 
 void Subscription::note_publisher(dds_instance_handle_t publisher, const std::string& dds_type) {

@@ -23,6 +23,9 @@ class Subscription {
     std::function<bool(const std::string& type)> accepts = {};  ///< "sensor_msgs/Imu"
     std::function<void(const std::string& type, ByteSpan cdr)> receive = {};
     std::function<void()> on_reader = [] {};  ///< called when a reader has been made
+    /// A reader goes with the last publisher of its type. Only who is known here finds the next one: a publisher of a
+    /// single message sends it as soon as it finds a reader, and one that does not know it yet would lose it.
+    bool only_while_published = false;
   };
   Subscription(const Participant& participant, Setup setup);
   ~Subscription() { stop(); }

@@ -71,8 +71,8 @@ BaseFrame::BaseFrame(Transport& transport, const NodeConfig& config) : frames_(c
     if (is_body) throw InputError("body_pose is the pose of the IMU in base_frame: set base_frame, too");
     T_base_B_ = pose_from(config.body_pose);
   } else if (!is_body) {
-    transport.subscribe_latched(
-        transport.full_name("/tf_static"), "tf2_msgs/TFMessage",
+    transport.subscribe_type(
+        transport.full_name("/tf_static"), "tf2_msgs/TFMessage", true,
         [this, wire = transport.wire()](const WireMessage& message) { transforms_.add(wire, message.bytes); });
   }
 }

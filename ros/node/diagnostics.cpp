@@ -113,6 +113,7 @@ Diagnosis diagnose(const NodeHealth& health) {
   Diagnosis diagnosis{level_of(health), summary(health), {}};
   Values& values = diagnosis.values;
   for (const auto& [topic, input] : health.inputs) add_input(values, topic, input);
+  if (!health.request.empty()) values.emplace_back("last request", health.request);
   if (health.age)
     values.emplace_back("newest step behind newest measurement [s]", fmt::format("{:.3f}", to_seconds(*health.age)));
   for (const Count& count : counts_of(health)) add_count(values, count.what, count.n);

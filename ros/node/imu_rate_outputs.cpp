@@ -74,6 +74,12 @@ void ImuRateOutputs::note(const Step& step, const SE3& T_map_odom, const std::op
   covariance_ = step.covariance;
 }
 
+void ImuRateOutputs::forget() {
+  const std::lock_guard lock(mutex_);
+  prediction_.correct(std::nullopt);
+  covariance_.reset();
+}
+
 Estimate ImuRateOutputs::estimate_of(const Step& step) const {
   const std::lock_guard lock(mutex_);
   const auto last = std::ranges::find_if(recent_.rbegin(), recent_.rend(),

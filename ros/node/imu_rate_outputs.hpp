@@ -30,6 +30,9 @@ class ImuRateOutputs {
   /// Each step, in order. The prediction is that of the base in odom; without T_B_base there is none.
   void note(const Step& step, const SE3& T_map_odom, const std::optional<SE3>& T_B_base);
 
+  /// There is no estimate any more, until the next step.
+  void forget();
+
   /// The body in the map, with the rate that was measured then: that of the newest sample before.
   Estimate estimate_of(const Step& step) const;
   std::optional<Timestamp> newest() const;

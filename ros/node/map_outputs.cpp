@@ -26,7 +26,14 @@ OccupancyOutputs::OccupancyOutputs(Transport& transport, const NodeConfig& confi
       heights_(heights_of(config.occupancy)),
       grid_(transport.advertise({"~/occupancy", "nav_msgs/OccupancyGrid", 1, true})),
       voxels_(transport.advertise({"~/octomap", "octomap_msgs/Octomap", 1, true})),
-      worker_(voxel_m_, config.occupancy.period_s, [this](const OccupancyMap& map) { publish(map); }) {}
+      period_s_(config.occupancy.period_s) {
+  clear();
+}
+
+void OccupancyOutputs::clear() {
+  worker_.reset();  // which publishes what waits
+  worker_.emplace(voxel_m_, period_s_, [this](const OccupancyMap& map) { publish(map); });
+}
 
 std::optional<HeightRange> OccupancyOutputs::heights_of(const OccupancyGridConfig& config) {
   if (config.low_m == 0.0 && config.high_m == 0.0) return std::nullopt;
@@ -65,6 +72,11 @@ void MapOutputs::publish(const Step& step) {
   if (step.keyframe) points_.add(step.landmarks);
   if (occupancy_) occupancy_->add(step.marginalized_keyframes);
   publish_map(step.t);
+}
+
+void MapOutputs::clear() {
+  points_ = SeenPoints(kMostMapPoints);
+  if (occupancy_) occupancy_->clear();
 }
 
 void MapOutputs::publish_map(Timestamp t) {

@@ -18,7 +18,8 @@ class OccupancyOutputs {
  public:
   /// Throws InputError for heights of the grid in the wrong order.
   OccupancyOutputs(Transport& transport, const NodeConfig& config);
-  void add(const std::vector<KeyframeRecord>& keyframes) { worker_.add(keyframes); }
+  void add(const std::vector<KeyframeRecord>& keyframes) { worker_->add(keyframes); }
+  void clear();
 
  private:
   void publish(const OccupancyMap& map);
@@ -30,7 +31,8 @@ class OccupancyOutputs {
   const std::optional<HeightRange> heights_;
   const std::unique_ptr<Publisher> grid_, voxels_;
   bool grid_too_large_ = false, keyframes_left_out_ = false;  ///< that has been reported
-  OccupancyWorker worker_;                                    ///< last member: its thread uses the others
+  const double period_s_;
+  std::optional<OccupancyWorker> worker_;  ///< last member: its thread uses the others
 };
 
 /// Landmarks and map are made only for subscribers.
@@ -39,6 +41,8 @@ class MapOutputs {
   MapOutputs(Transport& transport, const NodeConfig& config);
   /// For a step with a pose.
   void publish(const Step& step);
+  /// Forgets all places.
+  void clear();
 
  private:
   void publish_map(Timestamp t);

@@ -6,12 +6,11 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
+#include "edged/map/saved_map.hpp"
 #include "edged/pipeline/mode.hpp"
 
 namespace edged::node {
@@ -35,13 +34,17 @@ void stamp(Step& step, std::optional<Estimate>& base, Duration set_by) {
 Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& transport)
     : transport_(transport),
       rig_name_(calibration.rig.name),
-      odometry_(calibration.rig, calibration.imu, config.mode, config.options,
-                {config.delays, Inference::OwnThread, false}),
+      make_odometry_([config, calibration] {
+        return Odometry(calibration.rig, calibration.imu, config.mode, config.options,
+                        {config.delays, Inference::OwnThread, false});
+      }),
+      odometry_(make_odometry_()),
       base_(transport, config),
       outputs_(transport, config, base_.given()),
       imu_rate_(transport, config, calibration.imu.gyro_noise),
       inputs_(transport, config.max_age_s,
-              [this](const ImuSample& sample) { imu_rate_.add(sample, inputs_.clock_set_by()); }) {
+              [this](const ImuSample& sample) { imu_rate_.add(sample, inputs_.clock_set_by()); }),
+      requests_(transport) {
   // The first of a kind has a short name for its topic, another has its own.
   const Rig used = used_cameras(calibration.rig, config.mode, config.options.cameras);
   for (const RigCamera& camera : used.cameras) {
@@ -63,12 +66,56 @@ void Node::load_map(const NodeConfig& config) {
       throw InputError("map.localize_only needs the map to localize in: set map_file, too");
     return;
   }
-  std::ifstream in(config.map_file, std::ios::binary);
   try {
-    odometry_.load_map(std::string(std::istreambuf_iterator<char>(in), {}));
+    const std::string map = read_map_file(config.map_file);
+    odometry_.load_map(map);
+    if (config.options.map.localize_only) loaded_map_ = map;
   } catch (const InputError& e) {
-    throw InputError::format("map_file {}: {}", config.map_file, in.is_open() ? e.what() : "cannot be read");
+    throw InputError::format("map_file {}: {}", config.map_file, e.what());
   }
+}
+
+/// Its result is a line of the log, and in the diagnostics.
+void Node::serve(const Request& request) {
+  try {
+    served_ = fmt::format("{}: {}", request.text(), result_of(request));
+    spdlog::info(served_);
+  } catch (const InputError& e) {
+    served_ = fmt::format("{}: not done: {}", request.text(), e.what());
+    spdlog::error(served_);
+  }
+}
+
+std::string Node::result_of(const Request& request) {
+  if (request.kind == Request::Kind::SaveMap) return save_map(request.file);
+  Odometry fresh = make_odometry_();
+  if (request.kind == Request::Kind::Reset) {
+    if (!loaded_map_.empty()) fresh.load_map(loaded_map_);
+    start_anew(std::move(fresh));
+    return loaded_map_.empty() ? "the estimate starts anew, in a new map" : "the body is searched in the loaded map";
+  }
+  const std::string map = read_map_file(request.file);
+  fresh.load_map(map);
+  if (!loaded_map_.empty()) loaded_map_ = map;
+  start_anew(std::move(fresh));
+  return "the estimate starts anew, and the body is searched in this map";
+}
+
+std::string Node::save_map(const std::string& file) const {
+  const std::optional<std::string> map = odometry_.save_map();
+  if (!map) throw InputError("there is no map, or the body has not been found in the loaded one");
+  const std::size_t keyframes = saved_map_from_bytes(*map).keyframes.size();
+  if (keyframes == 0) throw InputError("no keyframe has left the window yet, or map.enabled is false");
+  write_map_file(file, *map);
+  return fmt::format("done: {} keyframes, {:.1f} MB", keyframes, 1e-6 * static_cast<double>(map->size()));
+}
+
+void Node::start_anew(Odometry fresh) {
+  odometry_ = std::move(fresh);
+  odom_ = OdomFrame();
+  newest_step_.reset();
+  imu_rate_.forget();
+  outputs_.clear();
 }
 
 Diagnosis Node::run(const std::function<bool()>& stop) {
@@ -91,6 +138,7 @@ void Node::receive(const std::function<bool()>& stop) {
   transport_.start();
   SteadyClock::time_point next_diagnostics;
   while (transport_.ok() && !stop()) {
+    while (const auto request = requests_.next()) serve(*request);
     if (!make_step())
       if (std::optional<Measurement> measurement = inputs_.next(kLongestWait)) odometry_.add(std::move(*measurement));
     if (SteadyClock::now() < next_diagnostics) continue;
@@ -126,6 +174,7 @@ Diagnosis Node::publish_diagnostics() {
   NodeHealth health;
   health.odometry = odometry_.counters();
   inputs_.describe(health);
+  health.request = served_;
   if (newest_step_) health.missing_transform = base_.waiting_for();
   log_.complete(health);
   if (const auto newest = imu_rate_.newest(); newest && newest_step_) health.age = *newest - *newest_step_;

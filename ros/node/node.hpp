@@ -12,6 +12,7 @@
 #include "node/inputs.hpp"
 #include "node/odom_frame.hpp"
 #include "node/outputs.hpp"
+#include "node/requests.hpp"
 #include "node/status_log.hpp"
 
 namespace edged::node {
@@ -30,6 +31,10 @@ class Node {
 
  private:
   void load_map(const NodeConfig& config);
+  void serve(const Request& request);
+  std::string result_of(const Request& request);
+  std::string save_map(const std::string& file) const;
+  void start_anew(Odometry fresh);
   void receive(const std::function<bool()>& stop);
   void add_waiting();
   bool make_step();
@@ -37,13 +42,17 @@ class Node {
 
   Transport& transport_;
   const std::string rig_name_;
+  const std::function<Odometry()> make_odometry_;
   Odometry odometry_;
+  std::string loaded_map_;  ///< of map.localize_only, for a reset
   BaseFrame base_;
   OdomFrame odom_;
   Outputs outputs_;
   ImuRateOutputs imu_rate_;
   Inputs inputs_;
   StatusLog log_;
+  Requests requests_;
+  std::string served_;  ///< the last request, and its result
   std::optional<Timestamp> newest_step_;
 };
 

@@ -6,17 +6,21 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 #include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/test_support.hpp"
 #include "node/node_test_support.hpp"
 
 namespace edged::node {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 NodeConfig davis_config() {
@@ -52,6 +56,61 @@ TEST(Node, StopsTheTransportWhenItFails) {
   };
   EXPECT_THROW(node.run(fails), std::runtime_error);
   EXPECT_FALSE(transport.runs);
+}
+
+/// The result of one request to a node that has seen nothing.
+std::string result_of(const NodeConfig& config, const std::string& topic, const std::string& file) {
+  KeptTransport transport(Wire::Ros1);
+  Node node(config, load_node_rig(config), transport);
+  WireWriter text(Wire::Ros1);
+  text.text(file);
+  const std::string bytes = text.message();
+  bool asked = false;
+  const Diagnosis end = node.run([&] {
+    if (!std::exchange(asked, true)) {
+      transport.receivers.at(topic)({"std_msgs/String", "", as_bytes(bytes)});
+      return false;
+    }
+    return true;
+  });
+  const auto found = std::ranges::find(end.values, "last request", &std::pair<std::string, std::string>::first);
+  return found == end.values.end() ? "" : found->second;
+}
+
+TEST(Node, RequestsHaveTheirResultInTheDiagnostics) {
+  EXPECT_EQ(result_of(davis_config(), "~/reset", ""), "reset: the estimate starts anew, in a new map");
+  EXPECT_EQ(result_of(davis_config(), "~/load_map", "/nowhere/lab.map"),
+            "load_map /nowhere/lab.map: not done: cannot be read");
+  EXPECT_EQ(result_of(davis_config(), "~/save_map", "/nowhere/lab.map"),
+            "save_map /nowhere/lab.map: not done: no keyframe has left the window yet, or map.enabled is false");
+}
+
+TEST(Requests, AMapFileIsReplacedAtOnceAndNoOtherFileIs) {
+  const TempFolder folder;
+  const std::string file = (folder.path() / "lab.map").string();
+  write_map_file(file, "maps 1\nfirst");
+  write_map_file(file, "maps 1\nsecond");
+  EXPECT_EQ(read_map_file(file), "maps 1\nsecond");
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+  EXPECT_THAT([&] { write_map_file(folder.write("notes.txt", "dear diary").string(), "maps 1\nthird"); },
+              ThrowsMessage<InputError>(HasSubstr("is there and no map")));
+  EXPECT_THAT([&] { write_map_file((folder.path() / "no" / "lab.map").string(), "maps 1\n"); },
+              ThrowsMessage<InputError>(HasSubstr("cannot be written")));
+  EXPECT_THAT([&] { read_map_file(folder.path().string()); }, ThrowsMessage<InputError>("cannot be read"));
+}
+
+TEST(Requests, DamagedOnesAreLeftOutAndTheOthersKeepTheirOrder) {
+  KeptTransport transport(Wire::Cdr);
+  Requests requests(transport);
+  transport.receivers.at("~/save_map")({"std_msgs/String", "", {}});
+  transport.receivers.at("~/reset")({"std_msgs/Empty", "", {}});
+  for (int i = 0; i < 100; ++i) transport.receivers.at("~/reset")({"std_msgs/Empty", "", {}});
+  int resets = 0;
+  while (const auto request = requests.next()) {
+    EXPECT_EQ(request->text(), "reset");
+    ++resets;
+  }
+  EXPECT_EQ(resets, 20) << "more than so many wait for nobody";
 }
 
 /// The messages of a driver of ROS 1.

@@ -31,7 +31,7 @@ class KeptTransport : public Transport {
     return found == remapped.end() ? topic : found->second;
   }
   void subscribe(const std::string& topic, Role, Receive receive) override { receivers[topic] = std::move(receive); }
-  void subscribe_latched(const std::string& topic, const std::string&, Receive receive) override {
+  void subscribe_type(const std::string& topic, const std::string&, bool, Receive receive) override {
     receivers[topic] = std::move(receive);
   }
   void start() override { runs = true; }

@@ -25,6 +25,11 @@ class Outputs {
   void publish_cameras(Timestamp t, const Rig& rig) { poses_.publish_cameras(t, rig); }
   /// The results of one packet. base: its state in the map, nothing while its place on the body is unknown.
   void publish(const Step& step, const std::optional<Estimate>& base, const SE3& T_map_odom);
+  /// Before poses in another map: forgets path and places.
+  void clear() {
+    poses_.clear();
+    map_.clear();
+  }
   void publish(const Diagnosis& diagnosis, const std::string& hardware) const;
 
  private:

@@ -22,6 +22,8 @@ class PoseOutputs {
   PoseOutputs(Transport& transport, const NodeConfig& config, const std::optional<SE3>& T_base_B);
   /// The state of the base in the map.
   void publish(const Estimate& in_map, const SE3& T_map_odom);
+  /// The path begins anew.
+  void clear() { path_.clear(); }
   /// The cameras as calibrated so far: once, and again, but not often, after their online calibration has changed.
   void publish_cameras(Timestamp t, const Rig& rig);
 

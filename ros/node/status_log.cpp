@@ -62,7 +62,8 @@ void StatusLog::complete(NodeHealth& health) {
   health.status = status_;
   health.reason = reason_;
   const std::size_t lost = lost_measurements(health);
-  health.newly_lost = lost - std::exchange(lost_, lost);
+  const std::size_t before = std::exchange(lost_, lost);
+  health.newly_lost = lost > before ? lost - before : 0;  // counters of the odometry begin anew with it
   const auto now = DropReport::Clock::now();
   const bool waits = !status_ || *status_ == TrackingStatus::Initializing;
   if (!waits || now - waits_from_ >= kWaitPeriod) {

@@ -21,9 +21,12 @@ class Ros1Transport final : public node::Transport {
   Wire wire() const override { return Wire::Ros1; }
   Timestamp now() const override;
   std::unique_ptr<node::Publisher> advertise(const node::Advertised& topic) override;
-  std::string full_name(const std::string& topic) const override { return public_.resolveName(topic); }
+  std::string full_name(const std::string& topic) const override {
+    return topic.starts_with("~/") ? private_.resolveName(topic.substr(2)) : public_.resolveName(topic);
+  }
   void subscribe(const std::string& topic, Role role, Receive receive) override;
-  void subscribe_latched(const std::string& topic, const std::string& /*type*/, Receive receive) override {
+  void subscribe_type(const std::string& topic, const std::string& /*type*/, bool /*latched*/,
+                      Receive receive) override {
     subscribe(topic, {}, std::move(receive));
   }
   void start() override { spinner_.start(); }

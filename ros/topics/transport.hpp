@@ -61,8 +61,8 @@ class Transport {
   /// start() to the end of stop(), which delivers what has arrived. Any type is accepted that the role can have.
   /// `receive` does not throw.
   virtual void subscribe(const std::string& topic, Role role, Receive receive) = 0;
-  /// A topic, a full name, of that type alone whose last messages a late subscriber gets, too.
-  virtual void subscribe_latched(const std::string& topic, const std::string& type, Receive receive) = 0;
+  /// A topic, a full name, of that type alone. latched: a late subscriber gets its last messages, too.
+  virtual void subscribe_type(const std::string& topic, const std::string& type, bool latched, Receive receive) = 0;
   virtual void start() = 0;
   virtual void stop() = 0;  ///< also if start() has failed or was not called; again without effect
   /// False once ROS itself shuts the node down.

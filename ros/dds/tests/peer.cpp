@@ -4,7 +4,8 @@
 // Usage: edged_ros2_peer RECORDING|none OUT [key=value ...], with keys skip (numbers of packets that are never sent),
 // loss [%] (packets of the network that are), from [s], rate, reliable=1, listen [s] (ends so long after the last
 // pose), node=NAME, nodes=N (it waits for so many), interfaces=2, rig=NAME, base=FRAME (on /tf_static the body is 0.2 m
-// in front of it), set_at, set_by [s] (the clock of the stamps is set). Writes OUT.tum (poses in the map),
+// in front of it), set_at, set_by [s] (the clock of the stamps is set), ask=REQUEST, ask_at [s] (without a recording at
+// once). Writes OUT.tum (poses in the map),
 // OUT.odom.tum, OUT.prediction.tum and OUT.json; without a recording also OUT.ready once the node publishes to it.
 #include <algorithm>
 #include <chrono>
@@ -20,100 +21,15 @@
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/parse/evt.hpp"
 #include "edged/live/live_clock.hpp"
 #include "fast_peer.hpp"
+#include "peer_driver.hpp"
 
 namespace edged::fast {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Options = std::map<std::string, std::string>;
 using Clock = std::chrono::steady_clock;
-
-double number_of(const Options& options, const std::string& key, double otherwise) {
-  const auto found = options.find(key);
-  return found == options.end() ? otherwise : std::stod(found->second);
-}
-
-std::string image_bytes(const Frame& frame, Timestamp t) {
-  Encoder out(frame.image.total() + 256);
-  out.header(to_ns(t), frame.camera);
-  out << static_cast<std::uint32_t>(frame.image.rows) << static_cast<std::uint32_t>(frame.image.cols)
-      << std::string("mono8") << std::uint8_t{0} << static_cast<std::uint32_t>(frame.image.cols);
-  const cv::Mat image = frame.image.isContinuous() ? frame.image : frame.image.clone();
-  out << std::vector<std::uint8_t>(image.data, image.data + image.total());
-  return out.bytes();
-}
-
-std::string imu_bytes(const ImuSample& sample, Timestamp t) {
-  Encoder out(1024);
-  out.header(to_ns(t), "imu");
-  out.doubles({0, 0, 0, 1, -1});
-  out.zeros(8);
-  out.doubles({sample.gyro_B.x(), sample.gyro_B.y(), sample.gyro_B.z()});
-  out.zeros(9);
-  out.doubles({sample.accel_B.x(), sample.accel_B.y(), sample.accel_B.z()});
-  out.zeros(9);
-  return out.bytes();
-}
-
-/// Event camera, camera and IMU.
-class Driver {
- public:
-  Driver(Participant& participant, const Options& options)
-      : skip_(static_cast<std::uint64_t>(number_of(options, "skip", 0))) {
-    const bool reliable = number_of(options, "reliable", 0) > 0;
-    events_ = participant.writer("/events", "event_camera_msgs::msg::dds_::EventPacket_", {reliable, false, 1000});
-    image_ = participant.writer("/image", "sensor_msgs::msg::dds_::Image_", {reliable, false, 10});
-    imu_ = participant.writer("/imu", "sensor_msgs::msg::dds_::Imu_", {reliable, false, 1000});
-  }
-
-  void set_clock(Duration by) { set_by_ = by; }
-  bool is_subscribed(int nodes) const {
-    return readers(events_) >= nodes && readers(image_) >= nodes && readers(imu_) >= nodes;
-  }
-
-  void send(const Measurement& measurement, cv::Size sensor) {
-    if (const auto* batch = std::get_if<EventBatch>(&measurement)) {
-      for (std::size_t begin = 0, end = 0; begin < batch->events.size(); begin = end) {
-        const Timestamp first = batch->events[begin].t;
-        while (end < batch->events.size() && batch->events[end].t - first < std::chrono::milliseconds(1)) ++end;
-        send_packet(std::span(batch->events).subspan(begin, end - begin), sensor);
-      }
-    } else if (const auto* frame = std::get_if<Frame>(&measurement)) {
-      write(image_, image_bytes(*frame, frame->t + set_by_));
-    } else if (const auto* sample = std::get_if<ImuSample>(&measurement)) {
-      write(imu_, imu_bytes(*sample, sample->t + set_by_));
-    }
-  }
-
- private:
-  static int readers(dds::DataWriter* writer) {
-    dds::PublicationMatchedStatus status;
-    writer->get_publication_matched_status(status);
-    return status.current_count;
-  }
-  static void write(dds::DataWriter* writer, std::string bytes) { writer->write(&bytes); }
-
-  void send_packet(std::span<const Event> events, cv::Size sensor) {
-    const std::string& evt3 = encoder_.encode(events);
-    const std::uint64_t sequence = sequence_++;
-    if (skip_ > 0 && sequence % skip_ == skip_ - 1) return;  // lost on the way
-    Encoder out(evt3.size() + 256);
-    out.header(to_ns(events.front().t + set_by_), "event_camera");
-    out << static_cast<std::uint32_t>(sensor.height) << static_cast<std::uint32_t>(sensor.width) << sequence
-        << static_cast<std::uint64_t>(to_ns(events.front().t)) << std::string("evt3") << false
-        << std::vector<std::uint8_t>(evt3.begin(), evt3.end());
-    write(events_, out.bytes());
-  }
-
-  const std::uint64_t skip_;
-  Duration set_by_{0};  ///< the clock of the stamps, against that of the event camera
-  dds::DataWriter *events_, *image_, *imu_;
-  EvtEncoder encoder_{EvtFormat::Evt3};
-  std::uint64_t sequence_ = 0;
-};
 
 constexpr const char *kToPx4 = "/fmu/in/vehicle_visual_odometry", *kToPx4Type = "px4_msgs::msg::dds_::VehicleOdometry_";
 
@@ -315,6 +231,25 @@ void wait_until(Condition condition, const char* otherwise) {
   }
 }
 
+/// "save_map:FILE", "load_map:FILE" or "reset" to the node, as `ros2 topic pub --once` sends it.
+void request(Participant& participant, const std::string& node, const std::string& what) {
+  const std::size_t sign = what.find(':');
+  const std::string name = what.substr(0, sign);
+  const bool reset = name == "reset";
+  dds::DataWriter* writer =
+      participant.writer("/" + node + "/" + name,
+                         reset ? "std_msgs::msg::dds_::Empty_" : "std_msgs::msg::dds_::String_", {true, false, 1});
+  wait_until([writer] { return Driver::readers(writer) > 0; }, "nobody takes requests");
+  Encoder out(1024);
+  if (reset) {
+    out << std::uint8_t{0};
+  } else {
+    out << what.substr(sign + 1);
+  }
+  std::string bytes = out.bytes();
+  writer->write(&bytes);
+}
+
 void drive_recording(Participant& participant, Driver& driver, const std::string& path, const Options& options) {
   const Recording recording = open_recording(path);
   const auto nodes = static_cast<int>(number_of(options, "nodes", 1));
@@ -328,7 +263,9 @@ void drive_recording(Participant& participant, Driver& driver, const std::string
   const double rate = number_of(options, "rate", 1.0);
   const auto duration = [&](const char* key, double s) { return duration_from_seconds(number_of(options, key, s)); };
   const Duration from = duration("from", 0), set_at = duration("set_at", 1e6), set_by = duration("set_by", 0);
+  const Duration ask_at = duration("ask_at", 1e6);
   std::optional<Timestamp> first;
+  bool asked = false;
   LiveClock pace;
   while (const auto measurement = recording.dataset->next()) {
     const auto t = last_stamp(*measurement);
@@ -336,6 +273,7 @@ void drive_recording(Participant& participant, Driver& driver, const std::string
     if (!first) first = *t;
     if (*t - *first < from) continue;
     if (*t - *first > set_at) driver.set_clock(set_by);
+    if (*t - *first > ask_at && !std::exchange(asked, true)) request(participant, "edged", options.at("ask"));
     pace.wait_for(*first + duration_from_seconds(to_seconds(*t - *first) / rate), [] { return false; });
     driver.send(*measurement, sensor);
   }
@@ -364,6 +302,7 @@ int run_peer(const std::string& recording, const std::string& out, const Options
     drive_recording(participant, *driver, recording, options);
   } else {
     wait_until([&listener] { return listener.is_connected(); }, "nobody publishes");
+    if (options.contains("ask")) request(participant, "edged", options.at("ask"));
     std::ofstream(out + ".ready") << "\n";
   }
   const auto quiet = std::chrono::duration<double>(number_of(options, "listen", 1.5));

@@ -202,6 +202,29 @@ class PeerOnFastDds(unittest.TestCase):
         print("the body in the loaded map, and where that was made:", offset, of_body[last][:3])
         self.assertLess(math.dist(offset, of_body[last][:3]), 0.05)
 
+    def asked(self, node, what):
+        """A request after the recording, and the end of the log."""
+        before = len(node.log())
+        self.peer("none", "asked", ask=what, listen=0.5)
+        return node.log()[before:]
+
+    def test_requests_save_and_load_the_map_and_start_anew(self):
+        node, flight, map_file = Node(self), self.folder / "flight", self.folder / "lab.map"
+        edged("simulate", "--preset", "room", "--duration", 11, "--out", flight, "--quiet")
+        self.assertIn(f"save_map {map_file}: not done: no keyframe has left the window yet", self.asked(node, f"save_map:{map_file}"))
+        self.peer(flight, "peer", ask="reset", ask_at=1)
+        rows = [[1e-6 * t, *pose] for t, pose in sorted(poses(self.folder / "peer.tum").items())]
+        self.assertIn("reset: the estimate starts anew, in a new map", node.log())
+        self.assertEqual(node.log().count("Initializing"), 2)
+        before, start = next(pair for pair in itertools.pairwise(rows) if pair[1][0] - pair[0][0] > 0.3)
+        self.assertLess(start[0] - before[0], 1.0)
+        self.assertRegex(self.asked(node, f"save_map:{map_file}"), r"done: \d+ keyframes, \d+\.\d MB")
+        self.assertIn("keyframes", edged("map", "info", map_file))
+        self.assertIn("not done: cannot be written", self.asked(node, "save_map:/nowhere/lab.map"))
+        self.assertIn("the body is searched in this map", self.asked(node, f"load_map:{map_file}"))
+        self.assertIn("not done: cannot be read", self.asked(node, "load_map:/nowhere/lab.map"))
+        node.end()
+
     def test_the_estimate_goes_on_when_the_clock_of_the_stamps_is_set(self):
         for by in (100, 0.05, -2):
             node = Node(self, name=f"set{len(str(by))}")

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 Edged USLAM developers
+// SPDX-License-Identifier: Apache-2.0
+#include "node/requests.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "edged/core/check.hpp"
+#include "edged/map/saved_map.hpp"
+
+namespace edged::node {
+namespace {
+
+constexpr std::size_t kMostRequests = 20;  // that may wait: saving takes a part of a second
+
+}  // namespace
+
+std::string Request::text() const {
+  switch (kind) {
+    case Kind::SaveMap:
+      return "save_map " + file;
+    case Kind::LoadMap:
+      return "load_map " + file;
+    case Kind::Reset:
+      return "reset";
+  }
+  EDGED_CHECK(false, "request {}", static_cast<int>(kind));
+}
+
+Requests::Requests(Transport& transport) {
+  subscribe(transport, "~/save_map", "std_msgs/String", Request::Kind::SaveMap);
+  subscribe(transport, "~/load_map", "std_msgs/String", Request::Kind::LoadMap);
+  subscribe(transport, "~/reset", "std_msgs/Empty", Request::Kind::Reset);
+}
+
+void Requests::subscribe(Transport& transport, const std::string& topic, const std::string& type, Request::Kind kind) {
+  transport.subscribe_type(
+      transport.full_name(topic), type, false,
+      [this, kind, wire = transport.wire()](const WireMessage& message) { add(kind, wire, message.bytes); });
+}
+
+void Requests::add(Request::Kind kind, Wire wire, ByteSpan message) {
+  Request request{kind, ""};
+  try {
+    if (kind != Request::Kind::Reset) request.file = WireReader(wire, message).text();
+  } catch (const Damage& damage) {
+    return spdlog::error("{}: unreadable: {}", request.text(), damage.what());
+  }
+  const std::lock_guard lock(mutex_);
+  if (waiting_.size() >= kMostRequests) return spdlog::error("{}: not done: too many requests wait", request.text());
+  waiting_.push_back(std::move(request));
+}
+
+std::optional<Request> Requests::next() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.empty()) return std::nullopt;
+  Request request = std::move(waiting_.front());
+  waiting_.pop_front();
+  return request;
+}
+
+std::string read_map_file(const std::string& file) {
+  std::error_code ignored;
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(file, ignored)) in.open(file, std::ios::binary);  // a pipe would be waited for
+  if (!in.is_open()) throw InputError("cannot be read");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_map_file(const std::string& file, const std::string& bytes) {
+  const std::string begin = bytes.substr(0, bytes.find('\n') + 1);  // name and version of the format
+  std::string before(begin.size(), '\0');
+  if (std::ifstream old(file, std::ios::binary);
+      old.read(before.data(), static_cast<std::streamsize>(before.size())).gcount() > 0 && before != begin)
+    throw InputError("the file is there and no map: choose another name, or remove it");
+  const std::string part = file + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out << bytes;
+  out.close();
+  std::error_code failed;
+  if (out) std::filesystem::rename(part, file, failed);
+  if (out && !failed) return;
+  std::error_code ignored;
+  std::filesystem::remove(part, ignored);
+  throw InputError(
+      "cannot be written: give the full name of a file in a folder that is there, may be written to and has room");
+}
+
+}  // namespace edged::node
