@@ -16,8 +16,9 @@ namespace {
 constexpr Duration kPiece = std::chrono::seconds(20);
 constexpr Duration::rep kAllPieces = 3, kOneInPieces = 3;  // at first all pieces, then one of so many
 constexpr std::size_t kMostWithRays = 16;                  // pieces that keep the rays of their turns, by memory
-constexpr double kLikeGyro = 0.5;   // most of the rotation in a piece that the gyro leaves unexplained
-constexpr double kLikeScale = 0.4;  // of the logarithm of the ratio of both rates: by chance it may be any
+constexpr double kLikeGyro = 0.5;           // most of the rotation in a piece that the gyro leaves unexplained
+constexpr double kLikeScale = 0.4;          // of the logarithm of the ratio of both rates: by chance it may be any
+constexpr double kMostPieceSigma_s = 0.01;  // of a right offset at most 6 ms, by few events; of a wrong one 13 ms
 constexpr double kLeastPieceSigma_s =
     3e-4;                           // of the offset in a piece: turns share errors that their scatter does not show
 constexpr double kSureDrift = 3.0;  // sigmas from none
@@ -47,6 +48,7 @@ std::vector<PieceOffset> offsets_of(std::span<const std::vector<Turn>> pieces, s
     const Timestamp begin = turns.front().begin + shift, end = turns.back().end + shift;
     const auto found = compare_with_gyro(turns, gyro_between(samples, begin - kAround, end + kAround), shift);
     if (!found || found->at_bound || found->mirrored || found->unexplained > kLikeGyro) continue;
+    if (found->time_sigma_s > kMostPieceSigma_s) continue;
     if (std::abs(std::log(std::max(found->gyro_scale, 1e-3))) > kLikeScale) continue;
     offsets.push_back({to_seconds(begin + (end - begin) / 2 - samples.front().t),
                        to_seconds(camera.time_offset - found->time_offset),
