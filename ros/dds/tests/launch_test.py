@@ -68,7 +68,7 @@ class Launch(unittest.TestCase):
 
     def test_the_package_is_found_where_it_is_installed(self):
         package = xml.etree.ElementTree.parse(ROOT / "package.xml").getroot()
-        self.assertEqual((package.findtext("name"), package.findtext("export/build_type")), ("edged", "cmake"))
+        self.assertEqual((package.findtext("name"), package.findtext("export/build_type")), ("edged", "ament_cmake"))
         version = subprocess.run([EDGED, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
         self.assertEqual(package.findtext("version"), version)
         with tempfile.TemporaryDirectory() as prefix:
@@ -77,6 +77,11 @@ class Launch(unittest.TestCase):
             installed = {str(path.relative_to(prefix)) for path in pathlib.Path(prefix).rglob("*") if not path.is_dir()}
             self.assertLessEqual({"share/ament_index/resource_index/packages/edged", "share/edged/package.xml",
                                   "share/edged/launch/edged.launch.py", "share/edged/rviz/edged.rviz", "lib/edged/edged"}, installed)
+            for shell in ("sh", "bash"):
+                script = f". share/edged/local_setup.{shell}; . share/edged/local_setup.{shell}; echo $AMENT_PREFIX_PATH"
+                found = subprocess.run([shell, "-uc", script], cwd=prefix, capture_output=True, text=True, check=True, env={
+                    "AMENT_PREFIX_PATH": "/opt/ros/jazzy", "COLCON_CURRENT_PREFIX": prefix, "PATH": os.environ["PATH"]})
+                self.assertEqual(found.stdout.strip(), f"{prefix}:/opt/ros/jazzy")  # once
             self.assertEqual(os.readlink(pathlib.Path(prefix) / "lib/edged/edged"), "../../bin/edged")
 
 
