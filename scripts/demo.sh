@@ -14,7 +14,7 @@ cmake --build --preset release --target edged
 
 edged=build/release/bin/edged
 flight=build/demo/${preset}_$seed
-# A flight of an earlier build may come from another simulator: make it anew.
+# A flight of an earlier build may come from another simulator: make it again.
 if [ ! -f "$flight/complete" ] || [ "$edged" -nt "$flight/complete" ]; then
   rm -rf "$flight"
   echo "simulating a flight ..."

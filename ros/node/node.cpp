@@ -92,13 +92,13 @@ std::string Node::result_of(const Request& request) {
   if (request.kind == Request::Kind::Reset) {
     if (!loaded_map_.empty()) fresh.load_map(loaded_map_);
     start_anew(std::move(fresh));
-    return loaded_map_.empty() ? "the estimate starts anew, in a new map" : "the body is searched in the loaded map";
+    return loaded_map_.empty() ? "the estimate starts again, in a new map" : "the body is searched in the loaded map";
   }
   const std::string map = read_map_file(request.file);
   fresh.load_map(map);
   if (!loaded_map_.empty()) loaded_map_ = map;
   start_anew(std::move(fresh));
-  return "the estimate starts anew, and the body is searched in this map";
+  return "the estimate starts again, and the body is searched in this map";
 }
 
 std::string Node::save_map(const std::string& file) const {

@@ -78,7 +78,7 @@ std::string result_of(const NodeConfig& config, const std::string& topic, const 
 }
 
 TEST(Node, RequestsHaveTheirResultInTheDiagnostics) {
-  EXPECT_EQ(result_of(davis_config(), "~/reset", ""), "reset: the estimate starts anew, in a new map");
+  EXPECT_EQ(result_of(davis_config(), "~/reset", ""), "reset: the estimate starts again, in a new map");
   EXPECT_EQ(result_of(davis_config(), "~/load_map", "/nowhere/lab.map"),
             "load_map /nowhere/lab.map: not done: cannot be read");
   EXPECT_EQ(result_of(davis_config(), "~/save_map", "/nowhere/lab.map"),

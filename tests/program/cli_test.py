@@ -37,7 +37,7 @@ class CommandLine(WithFolder):
         commands = edged("--help").stdout
         self.assertEqual((edged().stdout, edged("help").stdout, edged("help").returncode), (commands, commands, 0))
         self.assertEqual(edged("help", "map", "info").stdout, edged("map", "info", "--help").stdout)
-        self.assertLessEqual(max(map(len, commands.split("\n\nA first minute")[0].splitlines())), 80)
+        self.assertLessEqual(max(map(len, commands.split("\n\nFirst steps")[0].splitlines())), 80)
 
     def test_every_preset_is_described(self):
         help_text = edged("simulate", "--help").stdout

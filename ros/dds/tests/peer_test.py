@@ -214,7 +214,7 @@ class PeerOnFastDds(unittest.TestCase):
         self.assertIn(f"save_map {map_file}: not done: no keyframe has left the window yet", self.asked(node, f"save_map:{map_file}"))
         self.peer(flight, "peer", ask="reset", ask_at=1)
         rows = [[1e-6 * t, *pose] for t, pose in sorted(poses(self.folder / "peer.tum").items())]
-        self.assertIn("reset: the estimate starts anew, in a new map", node.log())
+        self.assertIn("reset: the estimate starts again, in a new map", node.log())
         self.assertEqual(node.log().count("Initializing"), 2)
         before, start = next(pair for pair in itertools.pairwise(rows) if pair[1][0] - pair[0][0] > 0.3)
         self.assertLess(start[0] - before[0], 1.0)

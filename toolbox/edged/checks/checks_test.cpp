@@ -22,10 +22,10 @@ TEST(Checks, NamesATruthThatContradictsItselfAndItsTime) {
   s.truth.emplace();
   s.truth->stream = stream(100, 0, 10);
   s.truth->jumps = 2, s.truth->first_jump = {timestamp_from_seconds(3), 1.5, 0.7};
-  EXPECT_THAT(remedy_of(s, {}, Warning, "2 jumps, the first at 3.000 s by 1.50 m and 40 deg"), HasSubstr("leave"));
+  EXPECT_THAT(remedy_of(s, {}, Warning, "2 jumps, the first at 3.000 s by 1.50 m and 40 deg"), HasSubstr("remove"));
   EXPECT_TRUE(is_unusable(Unusable::Truth, check_recording({s})));
   s.truth->frozen = std::chrono::seconds(1), s.truth->frozen_since = timestamp_from_seconds(2);
-  EXPECT_THAT(remedy_of(s, {}, Warning, "the same pose for 1.000 s from 2.000 s on"), HasSubstr("leave"));
+  EXPECT_THAT(remedy_of(s, {}, Warning, "the same pose for 1.000 s from 2.000 s on"), HasSubstr("remove"));
 }
 
 TEST(Checks, NamesACauseAndNotTheTimeOffsetThatFollows) {
