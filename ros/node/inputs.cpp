@@ -67,7 +67,9 @@ void Inputs::describe(NodeHealth& health) const {
   health.wrong_clocks = clocks_->wrong();
   for (const auto& [topic, input] : inputs_) health.inputs.emplace(topic, input.counters());
   for (const auto& [topic, troubles] : transport_.troubles()) {
-    InputCounters& input = health.inputs[topic];
+    const auto [entry, no_sensor] = health.inputs.try_emplace(topic);
+    InputCounters& input = entry->second;
+    input.optional = input.optional || no_sensor;  // requests and transforms
     input.lost = troubles.lost;
     input.refused = troubles.refused;
     input.transport_trouble = troubles.trouble;

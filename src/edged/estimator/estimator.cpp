@@ -172,7 +172,8 @@ bool Estimator::stationary_by_vision() const {
 /// Velocity of a body that has turned without much translation for a while, from features that were followed without a
 /// parallax that would tell their depth, if the estimate does not contradict. Nothing otherwise.
 std::optional<FlowVelocity> Estimator::turning_in_place(const EstimatorInput& input) const {
-  if (!initialized_ || input.t - supported_at_ < kEstimatorTuning.turning_after) return std::nullopt;
+  if (!initialized_ || !rotation_measured(window_) || input.t - supported_at_ < kEstimatorTuning.turning_after)
+    return std::nullopt;
   std::optional<FlowVelocity> flow = flow_velocity(window_, depth_m_);
   const std::optional<KnownMotion> known = known_motion(input);
   if (!flow || !known) return std::nullopt;

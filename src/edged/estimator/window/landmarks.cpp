@@ -185,6 +185,10 @@ void LandmarkConfig::visit(ConfigFields& fields) {
              {"", 10, 500, "Number of landmarks in the cost, per camera. More are more accurate and slower."});
 }
 
+bool rotation_measured(const Window& window) {
+  return std::ranges::none_of(window.states(), [](const auto& entry) { return entry.second.imu.gyro_clipped(); });
+}
+
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks) {
   const bool ended_too = tracks == Tracks::All;
   LandmarkBudget budget(window.cameras().size(), config.max_per_camera);
@@ -213,10 +217,12 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
       budget.add(window, feature);
     }
   }
+  // Rotation that is not measured puts points behind cameras as well.
+  const bool measured = rotation_measured(window);
   for (const auto& [id, anchor] : found) {
     const std::size_t camera = anchor.key.camera;
     const int before = ended_too ? budget.all(camera) : budget.observed(camera);
-    if (shows_translation(before, behind[camera])) window.make_landmark(id, anchor);
+    if (!measured || shows_translation(before, behind[camera])) window.make_landmark(id, anchor);
   }
 }
 

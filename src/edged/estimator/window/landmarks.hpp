@@ -14,6 +14,9 @@ namespace edged {
 
 enum class Tracks { Alive, All };
 
+/// Whether the gyroscope measured all rotation within the window: it was never beyond its range.
+bool rotation_measured(const Window& window);
+
 /// Turns tracks that have enough parallax into landmarks, within the budget of each camera: those of live tracks, and
 /// at an initialization in motion also those of ended tracks, which its first views have observed.
 void triangulate_features(Window& window, const LandmarkConfig& config, Tracks tracks = Tracks::Alive);
