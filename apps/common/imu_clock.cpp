@@ -45,8 +45,7 @@ std::string why_undetermined(const ImuOffset& found) {
 InputError undetermined(const std::string& name, const std::string& camera, const ImuOffset& found) {
   return InputError::format(
       "{}: --imu-time-offset auto: the turn rates of camera {} and gyro do not determine it: {}; turn the camera by "
-      "hand "
-      "about several axes for 10 s when recording, check its calibration and the gyro's unit, or give the seconds",
+      "hand about several axes for 10 s when recording, check its calibration and the gyro's unit, or give the seconds",
       name, camera, why_undetermined(found));
 }
 
@@ -60,7 +59,7 @@ std::string offset_evidence(const ImuOffset& found) {
   const std::string drift =
       found.rate_sigma ? fmt::format("drift {:+.1f} +- {:.1f} ppm", kPpm * (found.rate - 1.0), kPpm * *found.rate_sigma)
                        : std::string("too short to determine a drift");
-  return fmt::format("+- {:.1f} ms, {}; turn rates correlate by {:.2f}, elsewhere by at most {:.2f}",
+  return fmt::format("+- {:.1f} ms, {}; turn rates correlate by {:.2f}, at other offsets by at most {:.2f}",
                      1e3 * found.sigma_s, drift, found.match->correlation, found.match->next_correlation);
 }
 

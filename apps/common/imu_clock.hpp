@@ -19,7 +19,8 @@ struct ChosenImuClock {
   std::optional<ImuOffset> found;  ///< of `auto`
 };
 
-/// "+1000.0031 s", and "+- 0.4 ms, drift -48.1 +- 3.0 ppm; turn rates correlate by 0.98, elsewhere by at most 0.41".
+/// "+1000.0031 s", and "+- 0.4 ms, drift -48.1 +- 3.0 ppm; turn rates correlate by 0.98, at other offsets by at most
+/// 0.41".
 std::string offset_text(const ChosenImuClock& chosen);
 std::string offset_evidence(const ImuOffset& found);
 

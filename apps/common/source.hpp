@@ -62,8 +62,7 @@ struct Source {
 std::optional<SimulatorConfig> simulator_config(const SourceOptions& options);
 
 /// Adds --rig, --calib, --geometry, --time-unit, --imu-clock-rate, --imu-time-offset, --topic, --from (also --start),
-/// --to,
-/// --duration and --dim-frames.
+/// --to, --duration and --dim-frames.
 void add_reading_options(CLI::App& command, SourceOptions& options);
 
 /// Adds RECORDING, --imu, a flag for each external sensor, and the options of add_reading_options().

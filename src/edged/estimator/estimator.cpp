@@ -175,8 +175,8 @@ std::optional<FlowVelocity> Estimator::turning_in_place(const EstimatorInput& in
   if (!initialized_ || !rotation_measured(window_) || input.t - supported_at_ < kEstimatorTuning.turning_after)
     return std::nullopt;
   std::optional<FlowVelocity> flow = flow_velocity(window_, depth_m_);
-  const std::optional<KnownMotion> known = known_motion(input);
-  if (!flow || !known) return std::nullopt;
+  const std::optional<KnownMotion> known = flow ? known_motion(input) : std::nullopt;
+  if (!known) return std::nullopt;
   // The gyroscope's bias turns all rays alike.
   flow->sigma = std::max(kEstimatorTuning.turning_sigma, std::hypot(flow->sigma, depth_m_ * known->rate_sigma));
   const double sigma = std::hypot(known->speed_sigma, flow->sigma);

@@ -145,8 +145,7 @@ void check_turns(const TargetViews& camera, const std::vector<CameraTurn>& turns
                                    "its optical axis (roll)"};
   throw InputError::format(
       "camera {}: it hardly rotated about {}: {:.1f} deg/s on average, {:.0f} are needed for pose and clock of the "
-      "IMU; "
-      "rotate back and forth about all three axes",
+      "IMU; rotate back and forth about all three axes",
       camera.name, kAxes[axis], rate / kDegree, kLeastRate / kDegree);
 }
 

@@ -37,11 +37,9 @@ bool depth_in_bounds(double inverse_depth, const LandmarkConfig& config) {
 }
 
 /// Where the rays of a track with parallax meet.
-enum class Side { Before, Behind };
-
 struct Triangulation {
-  Side side;
-  NewAnchor anchor;  ///< without inverse depth where the point is behind the camera
+  ObservationKey anchor;
+  std::optional<double> inverse_depth;  ///< nothing for a point behind a camera
 };
 
 /// Nothing where there is too little parallax, or the views contradict one another.
@@ -58,10 +56,10 @@ std::optional<Triangulation> triangulate_feature(const Window& window, const Fea
   const double parallax = largest_angle(rays);
   if (parallax < kLandmarkTuning.min_parallax_deg * kDegree) return std::nullopt;
   const auto point = triangulate(rays, parallax);
-  if (!point) return Triangulation{Side::Behind, {*anchor, 0.0}};
+  if (!point) return Triangulation{*anchor, std::nullopt};
   if (point->rms_residual > config.max_residual_sigma * sigma) return std::nullopt;
   const auto inverse_depth = inverse_depth_in(window, *anchor, point->p_A, config);
-  return inverse_depth ? std::optional(Triangulation{Side::Before, {*anchor, *inverse_depth}}) : std::nullopt;
+  return inverse_depth ? std::optional(Triangulation{*anchor, inverse_depth}) : std::nullopt;
 }
 
 /// Landmarks of each camera: those that are no longer observed still constrain the window, but must not take the budget
@@ -210,11 +208,11 @@ void triangulate_features(Window& window, const LandmarkConfig& config, Tracks t
     if (!budget.has_room(window, feature)) continue;
     const auto point = triangulate_feature(window, feature, config);
     if (!point) continue;
-    if (point->side == Side::Behind) {
-      ++behind[point->anchor.key.camera];
-    } else {
-      found.emplace_back(id, point->anchor);
+    if (point->inverse_depth) {
+      found.emplace_back(id, NewAnchor{point->anchor, *point->inverse_depth});
       budget.add(window, feature);
+    } else {
+      ++behind[point->anchor.camera];
     }
   }
   // Rotation that is not measured puts points behind cameras as well.

@@ -38,7 +38,6 @@ class ImuOffsetSearch {
 
   /// To be called with each measurement, in any order of the sensors.
   void add(const Measurement& measurement);
-  const RigCamera& camera() const { return camera_; }
   ImuOffset result();
 
  private:
