@@ -34,29 +34,13 @@ void TableFile::add(const std::string& line) {
   if (!(out_ << line).flush()) throw InputError::format("{}: cannot be written; is the disk full?", file_.string());
 }
 
-std::filesystem::path part_of(std::filesystem::path file) { return file += ".part"; }
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path part = part_of(file);
-  std::ofstream out = open_for_writing(part);
-  out << text;
-  if (!out.flush()) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);  // frees the space for other files
-    throw InputError::format("{}: cannot be written; is the disk full?", file.string());
-  }
-  std::filesystem::rename(part, file);
-}
-
 void check_writable(const std::filesystem::path& file, const char* option, std::string_view kind_begins) {
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
     throw InputError::format("{}: is a folder, a pipe or a device; give {} a file", file.string(), option);
-  std::string begin(kind_begins.size(), '\0');
-  if (std::ifstream before(file, std::ios::binary); before.read(begin.data(), std::ssize(begin)).gcount() > 0)
-    if (begin != kind_begins)
-      throw InputError::format("{}: exists, and is not a file that {} replaces; choose another name, or remove it",
-                               file.string(), option);
+  if (begins_otherwise(file, kind_begins))
+    throw InputError::format("{}: exists, and is not a file that {} replaces; choose another name, or remove it",
+                             file.string(), option);
   std::string trial = file.string() + ".XXXXXX";
   const int opened = mkstemp(trial.data());
   if (opened < 0)

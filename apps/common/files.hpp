@@ -9,14 +9,9 @@
 #include <string>
 #include <string_view>
 
+#include "edged/core/whole_file.hpp"
+
 namespace edged {
-
-/// Replaces the file atomically: readers see the old file or the new one, even if the program is killed meanwhile.
-/// Throws InputError if it cannot be written.
-void write_file(const std::filesystem::path& file, const std::string& content);
-
-/// The temporary file of write_file.
-std::filesystem::path part_of(std::filesystem::path file);
 
 /// A table that grows: it consists of complete lines, whenever the program ends.
 class TableFile {

@@ -8,8 +8,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "common/files.hpp"
@@ -28,14 +26,11 @@ struct MapOptions {
 /// read: a function of the file's bytes. Adds the file's name to its errors.
 template <typename Read>
 auto read_map_file(const std::filesystem::path& file, Read read) {
-  std::error_code ignored;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(file, ignored)) in.open(file, std::ios::binary);  // a pipe would be waited for
-  if (!in.is_open())
+  const std::optional<std::string> bytes = read_file(file);
+  if (!bytes)
     throw InputError::format("{}: not a readable map; `edged run RECORDING --save-map FILE` makes one", file.string());
-  const std::string bytes(std::istreambuf_iterator<char>(in), {});
   try {
-    return read(bytes);
+    return read(*bytes);
   } catch (const InputError& e) {
     throw InputError::format("{}: {}", file.string(), e.what());
   }

@@ -4,14 +4,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
+#include <exception>
 #include <utility>
 
 #include "edged/core/check.hpp"
-#include "edged/map/saved_map.hpp"
+#include "edged/core/whole_file.hpp"
 
 namespace edged::node {
 namespace {
@@ -65,30 +62,20 @@ std::optional<Request> Requests::next() {
 }
 
 std::string read_map_file(const std::string& file) {
-  std::error_code ignored;
-  std::ifstream in;
-  if (std::filesystem::is_regular_file(file, ignored)) in.open(file, std::ios::binary);  // a pipe would be waited for
-  if (!in.is_open()) throw InputError("cannot be read");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::optional<std::string> bytes = read_file(file);
+  if (!bytes) throw InputError("cannot be read");
+  return *std::move(bytes);
 }
 
 void write_map_file(const std::string& file, const std::string& bytes) {
-  const std::string begin = bytes.substr(0, bytes.find('\n') + 1);  // name and version of the format
-  std::string before(begin.size(), '\0');
-  if (std::ifstream old(file, std::ios::binary);
-      old.read(before.data(), static_cast<std::streamsize>(before.size())).gcount() > 0 && before != begin)
+  if (begins_otherwise(file, bytes.substr(0, bytes.find('\n') + 1)))  // name and version of the format
     throw InputError("the file is there and no map: choose another name, or remove it");
-  const std::string part = file + ".part";
-  std::ofstream out(part, std::ios::binary);
-  out << bytes;
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(part, file, failed);
-  if (out && !failed) return;
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  throw InputError(
-      "cannot be written: give the full name of a file in a folder that is there, may be written to and has room");
+  try {
+    write_file(file, bytes);
+  } catch (const std::exception&) {
+    throw InputError(
+        "cannot be written: give the full name of a file in a folder that is there, may be written to and has room");
+  }
 }
 
 }  // namespace edged::node
