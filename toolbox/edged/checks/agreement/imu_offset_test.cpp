@@ -48,7 +48,7 @@ std::vector<ImuSample> samples_of(const Rate& rate, double begin_s, double end_s
   return samples;
 }
 
-const SE3 kMount(so3::exp({0.3, -1.2, 2.0}), Eigen::Vector3d::Zero());
+const SE3 kAgainstImu(so3::exp({0.3, -1.2, 2.0}), Eigen::Vector3d::Zero());
 
 /// Turns of 80 ms at 25 Hz in pieces of 20 s, with noise of 1 mrad each axis.
 std::vector<std::vector<Turn>> pieces_of(const Rate& rate, double seconds) {
@@ -61,13 +61,13 @@ std::vector<std::vector<Turn>> pieces_of(const Rate& rate, double seconds) {
     for (double& axis : phi) axis += normal(random);
     if (static_cast<std::size_t>(t / 20.0) >= pieces.size()) pieces.emplace_back();
     pieces.back().push_back(
-        {timestamp_from_seconds(t), timestamp_from_seconds(t + 0.08), kMount.R().transpose() * phi});
+        {timestamp_from_seconds(t), timestamp_from_seconds(t + 0.08), kAgainstImu.R().transpose() * phi});
   }
   return pieces;
 }
 
 RigCamera camera(double time_offset_s = 0.0) {
-  return {"frames", Modality::Frames, {}, kMount, duration_from_seconds(time_offset_s)};
+  return {"frames", Modality::Frames, {}, kAgainstImu, duration_from_seconds(time_offset_s)};
 }
 
 TEST(ImuOffset, FindsAnyOffset) {
