@@ -34,8 +34,7 @@ if(EDGED_SANITIZE)
 endif()
 
 # Headers of others that most sources include: read once, not hundreds of times (compilers' caches want
-# CMAKE_DISABLE_PRECOMPILE_HEADERS=ON). A source includes what it uses all the same: clang-tidy and the sanitizers'
-# presets go without.
+# CMAKE_DISABLE_PRECOMPILE_HEADERS=ON). A source includes what it uses all the same: clang-tidy goes without.
 set(EDGED_PRECOMPILED <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
                       <optional> <set> <span> <string> <string_view> <tuple> <utility> <variant> <vector> <Eigen/Dense>
                       <opencv2/core.hpp> <spdlog/fmt/fmt.h>)

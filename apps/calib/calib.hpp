@@ -20,7 +20,7 @@ struct TargetOptions {
   std::string kind;  ///< "" without --target
   std::optional<int> rows, columns;
   std::optional<double> size_mm, ratio;
-  std::string lens = "radtan", format = "edged";
+  std::string lens = "auto", format = "edged";
   std::vector<std::string> cameras;  ///< to read; empty: all
   bool no_imu = false;
   std::filesystem::path report, print;  ///< files of --report and --print-target

@@ -40,7 +40,7 @@ TargetSpec spec_of(const TargetOptions& given) {
 }
 
 std::vector<std::string> lens_names() {
-  std::vector<std::string> out;
+  std::vector<std::string> out{"auto"};
   for (const LensModel& lens : lens_models()) out.emplace_back(lens.name);
   return out;
 }
@@ -89,11 +89,12 @@ CollectorOptions collector_options(const CalibOptions& options, const Recording&
 
 /// The lens of each camera; throws what is missing of all of them in one line.
 void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& cameras, const ViewCollector& collector,
-                DistortionModel lens, StatusLine& status) {
+                const std::string& lens, StatusLine& status) {
   std::string needed;
   for (const TargetViews& views : cameras) {
     status.show(fmt::format("lens of {} from {}", views.name, quantity(views.views.size(), "view")));
-    LensFit fit = fit_lens(views, collector.layout(), lens);
+    LensFit fit = lens == "auto" ? fit_best_lens(views, collector.layout())
+                                 : fit_lens(views, collector.layout(), find_lens_model(lens)->model);
     result.coverage.push_back(coverage_of(views, fit, collector.layout()));
     const MissingViews missing = missing_views(views, fit, result.coverage.back());
     for (const std::string& line : missing.needed) needed += (needed.empty() ? "" : "; ") + line;
@@ -162,7 +163,7 @@ void add_target_options(CLI::App& calib, TargetOptions& options) {
   calib.add_option(
       "--ratio", options.ratio,
       "Of the target: gap over side of a tag (Kalibr's tagSpacing) [0.3]; charuco: marker over square [0.75]");
-  calib.add_option("--lens", options.lens, "With --target: model of the lenses")
+  calib.add_option("--lens", options.lens, "With --target: model of the lenses; auto: radtan, or equidistant where it leaves a fifth less")
       ->check(CLI::IsMember(lens_names()))
       ->capture_default_str();
   calib
@@ -211,7 +212,7 @@ int calibrate_from_target(const CalibOptions& options) {
   const std::vector<TargetViews> cameras = collector.cameras();
   if (cameras.empty())
     throw InputError::format("{}: there are no pictures and no events; check --mode and --cameras", result.recording);
-  fit_lenses(result, cameras, collector, find_lens_model(options.target.lens)->model, status);
+  fit_lenses(result, cameras, collector, options.target.lens, status);
   const bool known_noise = recording.calibration && recording.calibration->has_imu_noise;
   const ImuNoise noise = known_noise ? recording.calibration->imu : ImuNoise();
   const std::vector<ImuSample> none;

@@ -183,6 +183,12 @@ std::vector<double> residuals_of(const Trial& trial) {
   return out;
 }
 
+double rms_of(const std::vector<double>& residuals) {
+  double squares = 0.0;
+  for (const double r : residuals) squares += r * r;
+  return std::sqrt(2.0 * squares / std::max<double>(1.0, static_cast<double>(residuals.size())));
+}
+
 double sigma_of(const Trial& trial) { return std::max(kLeastSigma_px, robust_deviation(residuals_of(trial), 0.0)); }
 
 /// Keeps the result unless it is no lens: a few views without corners at the border of the image leave the distortion
@@ -304,7 +310,7 @@ LensFit fit_lens(const TargetViews& camera, const TargetLayout& layout, Distorti
           "corners "
           "of the image, or choose a --lens with fewer coefficients",
           camera.name);
-  LensFit out{all.lens, sigma_of(all), {}, {}};
+  LensFit out{all.lens, sigma_of(all), rms_of(residuals_of(all)), {}, {}};
   if (out.sigma_px > kWorstFit_px) throw refuse(out.sigma_px);
   out.sigmas = sigmas_of(all, out.sigma_px);
   const CameraModel model = all.lens.model(camera.width, camera.height);
@@ -312,6 +318,22 @@ LensFit fit_lens(const TargetViews& camera, const TargetLayout& layout, Distorti
   for (const std::size_t index : usable)
     out.T_C_T[index] = pose_with(all.lens, model, pairs_of(camera.views[index], layout), 3.0 * out.sigma_px);
   return out;
+}
+
+LensFit fit_best_lens(const TargetViews& camera, const TargetLayout& layout) {
+  constexpr double kBetter = 0.8;
+  std::optional<LensFit> best;
+  std::optional<InputError> refused;
+  for (const DistortionModel distortion : {DistortionModel::RadTan, DistortionModel::Equidistant}) {
+    try {
+      LensFit fit = fit_lens(camera, layout, distortion);
+      if (!best || fit.rms_px < kBetter * best->rms_px) best = std::move(fit);
+    } catch (const InputError& e) {
+      if (!refused) refused = e;
+    }
+  }
+  if (!best) throw *refused;
+  return *best;
 }
 
 }  // namespace edged

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "edged/calibrate/reprojection.hpp"
+#include "edged/calibrate/rig_fit.hpp"
 #include "edged/calibrate/test_views.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/estimator/factors/blocks.hpp"
@@ -41,6 +42,40 @@ TEST(LensFit, BearsWithWrongCorners) {
   for (TargetView& view : camera.views)
     for (std::size_t i = 0; i < view.corners.size(); i += 20) view.corners[i].pixel += Eigen::Vector2d(4.0, -7.0);
   EXPECT_LT(largest_difference_px(truth, fit_lens(camera, layout, truth.distortion).lens), 0.3);
+}
+
+/// A fisheye lens of which radtan's polynomial misses the corners near the border.
+FreeLens wide_lens() { return lenses_of_the_tests()[2]; }
+
+TEST(LensFit, TakesTheModelThatExplainsTheViews) {
+  const TargetLayout layout = layout_of(usual_target(TargetKind::AprilGrid));
+  const LensFit wide = fit_best_lens(views_through(wide_lens(), layout, 30, 0.05, 3), layout);
+  EXPECT_EQ(wide.lens.distortion, DistortionModel::Equidistant);
+  EXPECT_NEAR(wide.rms_px, 0.05 * std::sqrt(2.0), 0.01);
+  const FreeLens usual = lenses_of_the_tests()[1];
+  EXPECT_EQ(fit_best_lens(views_through(usual, layout, 30, 0.05, 3), layout).lens.distortion, DistortionModel::RadTan);
+}
+
+// The focal length scatters between sets of views by what its sigma says, although radtan is the wrong model: by the
+// noise of the corners alone the sigma would be many times too small.
+TEST(RigFit, SigmasContainWhatTheModelOfTheLensMisses) {
+  const TargetLayout layout = layout_of(usual_target(TargetKind::AprilGrid));
+  std::vector<double> focal;
+  double variance = 0.0, by_noise = 0.0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const TargetViews views = views_through(wide_lens(), layout, 16, 0.02, seed);
+    const LensFit lens = fit_lens(views, layout, DistortionModel::RadTan);
+    const RigFit fit = fit_rig({{views, lens}}, layout, {}, {});
+    focal.push_back(fit.cameras[0].lens.values[0]);
+    variance += std::pow(fit.cameras[0].lens_sigmas[0], 2) / 6.0;
+    by_noise += std::pow(lens.sigmas[0], 2) / 6.0;
+  }
+  double mean = 0.0, scatter = 0.0;
+  for (const double f : focal) mean += f / 6.0;
+  for (const double f : focal) scatter += (f - mean) * (f - mean) / 5.0;
+  EXPECT_LT(scatter, 4.0 * variance);
+  EXPECT_GT(scatter, 0.1 * variance);
+  EXPECT_GT(scatter, 4.0 * by_noise);
 }
 
 TEST(LensFit, SaysWhatToRecord) {

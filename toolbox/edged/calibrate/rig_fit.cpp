@@ -196,7 +196,7 @@ std::vector<CornerResidual> residuals_of(const RigUnknowns& unknowns, const std:
   return out;
 }
 
-/// variances: as RigProblem::calibration_covariance has them.
+/// variances: as RigProblem::calibration_variances() has them.
 RigFit result_of(const RigUnknowns& unknowns, const Eigen::VectorXd& variances,
                  const std::vector<TargetCamera>& cameras, const TargetLayout& layout) {
   RigFit out;
@@ -239,7 +239,7 @@ RigFit fit_rig(const std::vector<TargetCamera>& cameras, const TargetLayout& lay
     double moved_s = 0.0;
     for (const CameraBlocks& camera : unknowns.cameras) moved_s = std::max(moved_s, std::abs(camera.correction_s));
     const bool settled = !has_imu || moved_s < kClockSettled_s || round + 1 == kMostRounds;
-    const Eigen::VectorXd variances = settled ? problem.calibration_covariance().diagonal().eval() : Eigen::VectorXd();
+    const Eigen::VectorXd variances = settled ? problem.calibration_variances() : Eigen::VectorXd();
     problem.apply_corrections();
     if (settled) {
       RigFit out = result_of(unknowns, variances, cameras, layout);

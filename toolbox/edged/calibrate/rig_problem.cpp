@@ -49,21 +49,37 @@ SparseMatrix to_eigen(const ceres::CRSMatrix& J) {
   return out;
 }
 
-/// The covariance of the last columns of J, `kept` of them, with the others unknown as well.
-Eigen::MatrixXd marginal_covariance(const SparseMatrix& J, Eigen::Index kept) {
+/// A column for each cluster of rows, so that J^T times it has the gradient of each cluster.
+SparseMatrix by_cluster(const std::vector<double>& residuals, const std::vector<int>& rows) {
+  SparseMatrix out(static_cast<Eigen::Index>(residuals.size()), static_cast<Eigen::Index>(rows.size()));
+  int row = 0;
+  for (std::size_t cluster = 0; cluster < rows.size(); ++cluster)
+    for (int i = 0; i < rows[cluster]; ++i, ++row)
+      out.insert(row, static_cast<Eigen::Index>(cluster)) = residuals[static_cast<std::size_t>(row)];
+  return out;
+}
+
+/// The variances of the last columns of J, `kept` of them, with the others unknown as well: by J alone, or by the
+/// gradients of the clusters where these scatter more.
+Eigen::VectorXd marginal_variances(const SparseMatrix& J, const SparseMatrix& clusters, Eigen::Index kept) {
   const SparseMatrix H = J.transpose() * J;
   const Eigen::Index others = H.cols() - kept;
+  const SparseMatrix gradients = J.transpose() * clusters;
   Eigen::MatrixXd information = H.bottomRightCorner(kept, kept).toDense();
+  Eigen::MatrixXd scores = gradients.bottomRows(kept).toDense();
   if (others > 0) {
     SparseMatrix states = H.topLeftCorner(others, others);
     for (Eigen::Index i = 0; i < others; ++i) states.coeffRef(i, i) += 1e-9;
     const Eigen::MatrixXd coupling = H.topRightCorner(others, kept).toDense();
-    const Eigen::SimplicialLDLT<SparseMatrix> solver(states);
-    information -= coupling.transpose() * solver.solve(coupling);
+    const Eigen::MatrixXd eliminated = Eigen::SimplicialLDLT<SparseMatrix>(states).solve(coupling);
+    information -= coupling.transpose() * eliminated;
+    scores -= eliminated.transpose() * SparseMatrix(gradients.topRows(others));
   }
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  return scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(kept, kept)) * scale.asDiagonal();
+  const Eigen::MatrixXd covariance =
+      scale.asDiagonal() * scaled.ldlt().solve(Eigen::MatrixXd::Identity(kept, kept)) * scale.asDiagonal();
+  return covariance.diagonal().cwiseMax((covariance * scores).rowwise().squaredNorm());
 }
 
 }  // namespace
@@ -91,7 +107,8 @@ RigProblem::RigProblem(RigUnknowns& unknowns, const std::vector<TargetCamera>& c
 }
 
 void RigProblem::add_views(const std::vector<TargetCamera>& cameras, const TargetLayout& layout) {
-  for (RigState& state : unknowns_.states)
+  for (RigState& state : unknowns_.states) {
+    rows_.push_back(0);
     for (const auto& [camera, view] : state.views) {
       CameraBlocks& blocks = unknowns_.cameras[camera];
       const TargetCamera& of = cameras[camera];
@@ -100,11 +117,13 @@ void RigProblem::add_views(const std::vector<TargetCamera>& cameras, const Targe
       instant.after_state_s = to_seconds(seen.t + duration_from_seconds(blocks.time_offset_s) - state.t);
       instant.gyro_B = state.gyro_B;
       instant.R_W_T = unknowns_.R_W_T;
-      problem_.AddResidualBlock(
-          new MovingReprojection(pairs_of(seen, layout), of.lens.lens.distortion, of.lens.sigma_px, instant), nullptr,
-          state.T_W_B.data(), state.motion.data(), blocks.T_B_C.data(), &blocks.correction_s, unknowns_.tilt.data(),
-          blocks.lens.data());
+      auto* cost = new MovingReprojection(pairs_of(seen, layout), of.lens.lens.distortion, of.lens.sigma_px, instant);
+      rows_.back() += cost->num_residuals();
+      terms_.push_back(problem_.AddResidualBlock(cost, nullptr, state.T_W_B.data(), state.motion.data(),
+                                                 blocks.T_B_C.data(), &blocks.correction_s, unknowns_.tilt.data(),
+                                                 blocks.lens.data()));
     }
+  }
 }
 
 void RigProblem::add_imu(std::span<const ImuSample> imu, const ImuNoise& noise) {
@@ -117,8 +136,11 @@ void RigProblem::add_imu(std::span<const ImuSample> imu, const ImuNoise& noise) 
     imu_terms_.push_back(problem_.AddResidualBlock(new ImuFactor(i, i + 1, motions_.back()), nullptr, a.T_W_B.data(),
                                                    a.motion.data(), b.T_W_B.data(), b.motion.data(),
                                                    imu_intrinsics_.data()));
+    terms_.push_back(imu_terms_.back());
+    rows_.push_back(15);
   }
-  problem_.AddResidualBlock(bias_prior(), nullptr, unknowns_.states.front().motion.data());
+  terms_.push_back(problem_.AddResidualBlock(bias_prior(), nullptr, unknowns_.states.front().motion.data()));
+  rows_.push_back(9);
 }
 
 void RigProblem::fix_known_parameters(const std::vector<TargetCamera>& cameras) {
@@ -146,7 +168,7 @@ void RigProblem::apply_corrections() {
   unknowns_.tilt = {};
 }
 
-Eigen::MatrixXd RigProblem::calibration_covariance() {
+Eigen::VectorXd RigProblem::calibration_variances() {
   std::vector<double*> order;
   const auto add = [&](double* block) {
     if (!problem_.IsParameterBlockConstant(block)) order.push_back(block);
@@ -169,14 +191,14 @@ Eigen::MatrixXd RigProblem::calibration_covariance() {
   }
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = order;
+  options.residual_blocks = terms_;
+  std::vector<double> residuals;
   ceres::CRSMatrix J;
-  problem_.Evaluate(options, nullptr, nullptr, nullptr, &J);
-  const Eigen::MatrixXd covariance = marginal_covariance(to_eigen(J), static_cast<Eigen::Index>(places.size()));
-  const int all = kPerCamera * static_cast<int>(unknowns_.cameras.size());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(all, all);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t k = 0; k < places.size(); ++k)
-      out(places[i], places[k]) = covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+  problem_.Evaluate(options, nullptr, &residuals, nullptr, &J);
+  const Eigen::VectorXd variances =
+      marginal_variances(to_eigen(J), by_cluster(residuals, rows_), static_cast<Eigen::Index>(places.size()));
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(kPerCamera * static_cast<int>(unknowns_.cameras.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) out[places[i]] = variances[static_cast<Eigen::Index>(i)];
   return out;
 }
 

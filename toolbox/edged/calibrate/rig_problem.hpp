@@ -50,9 +50,11 @@ class RigProblem {
   void solve(int most_steps);
   /// Moves what the corrections are relative to, so that they are zero.
   void apply_corrections();
-  /// Blocks of T_B_C (6), clock and lens (kLensParameters), one camera after the other; rows of what is not estimated
-  /// are 0.
-  Eigen::MatrixXd calibration_covariance();
+  /// Blocks of T_B_C (6), clock and lens (kLensParameters), one camera after the other; 0 where nothing is estimated.
+  /// The larger of two variances: by the sigmas of the corners, as if these erred by themselves, and by how far the
+  /// views contradict each other, which contains what the model of the lens misses (the sandwich estimator with a
+  /// cluster for each state; Liang and Zeger, Biometrika 73, 1986).
+  Eigen::VectorXd calibration_variances();
   double imu_misfit() const;
 
  private:
@@ -65,6 +67,8 @@ class RigProblem {
   PoseBlockManifold pose_manifold_;
   std::deque<ceres::SubsetManifold> lens_manifolds_;
   std::deque<Preintegration> motions_;
+  std::vector<ceres::ResidualBlockId> terms_;  ///< all of them, in the order of the states
+  std::vector<int> rows_;                      ///< residuals of each state's views, then of each other term
   std::vector<ceres::ResidualBlockId> imu_terms_;
   ImuIntrinsicsBlock imu_intrinsics_{};
   ceres::Problem problem_;
