@@ -1,16 +1,6 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""Edged USLAM: visual-inertial odometry from events, frames and an IMU. Measurements go in as numpy arrays, steps come out:
-
-    odometry = edged.Odometry("davis240c_ecd")
-    odometry.add_imu(edged.make_imu(t, gyro, accel))
-    odometry.add_events("events", edged.make_events(t, x, y, p))
-    for step in odometry:
-        print(step.t, step.status, step.position)
-
-Stamps are whole nanoseconds, of each sensor's own clock as recorded; lengths are metres, angles radians. W is the world,
-z up; B the body, which is the IMU: T_W_B maps points of B to W. Quaternions are x, y, z, w.
-"""
+# Docstrings are in __init__.pyi, where editors and type checkers look; _docs.py gives them to the module.
 import json as _json
 import pathlib as _pathlib
 import sys as _sys
@@ -78,30 +68,22 @@ def _rows(dtype, t, **columns):
 
 
 def make_events(t, x, y, p):
-    """An array of EVENT from columns of one length: stamps [ns], columns and rows of pixels (whole numbers within 16 bits), and whether
-    it became brighter (p > 0). ValueError, TypeError where a column does not fit: nothing is cut, wrapped or repeated."""
     return _rows(EVENT, t=t, x=x, y=y, p=_numpy.asarray(p) > 0)
 
 
 def make_imu(t, gyro, accel):
-    """An array of IMU from stamps [ns], rates [rad/s] and specific forces [m/s^2], N x 3 each; or one of each."""
     return _rows(IMU, t=t, gyro=gyro, accel=accel)
 
 
 def make_poses(t, position, quaternion):
-    """An array of POSE from stamps [ns], positions [m] N x 3 and quaternions (x, y, z, w) N x 4."""
     return _rows(POSE, t=t, position=position, quaternion=quaternion)
 
 
 def trajectory(steps, frame="body"):
-    """The poses of the steps that have one (status GOOD or DEGRADED): of the body on the IMU's clock, or of a camera on its own."""
     return _numpy.concatenate([_numpy.empty(0, POSE), *(step.pose_of(frame) for step in steps if step.is_tracking)])
 
 
 def run(recording, mode="auto", options=None):
-    """The steps of the odometry over a recording, as it goes; "auto": from all sensors that there are. As `edged run` it
-    checks recording and calibration against each other, and logs what it finds (logger "edged").
-    """
     odometry = recording.odometry(mode, options or {})
     check = _RunCheck(recording, odometry)
     for measurement in recording:
@@ -114,9 +96,6 @@ def run(recording, mode="auto", options=None):
 
 
 def evaluate(estimate, truth, protocol="P3", max_gap_s=0.2, deltas_s=(1.0, 10.0)):
-    """How far the estimate is from the truth, both arrays of POSE of the same sensor on the same clock: the dictionary that
-    `edged eval --json` prints. P1: SE(3) on seconds 3 to 8; P2: SE(3) on the first 5 s; P3: SE(3) on all; P4: Sim(3) on all.
-    """
     return _json.loads(_evaluate_to_json(estimate, truth, protocol, max_gap_s, list(deltas_s)))
 
 

@@ -37,11 +37,6 @@ def _words(flag, value):
 
 
 def write_run(recording, out=None, options=None, **flags):
-    """Writes the run folder of a recording with trajectories, metrics.json and report.html, as `edged run` does (in a process of
-    its own), and returns its metrics.json: "folder", "verdict", "trusted", "ate_rmse_m" and so on. recording: a path, or
-    "sim:room:3". out: the folder; None: runs/NAME-MODE. flags: those of `edged run --help`, such as rig="davis240c_ecd",
-    mode="events", imu="imu.csv", force=True. Ctrl-C ends the run with complete files.
-    """
     words = [_program(), "run", os.fspath(recording), "--json", "--quiet"]
     for flag, value in {"out": out, "set": options, **flags}.items():
         words += _words(flag, value)

@@ -1,61 +1,81 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The stub and the module name the same things."""
+"""The stub says what the module is: its docstrings, and the arguments of what is compiled. types_test.py compares the names."""
 import ast
 import inspect
 import pathlib
+import re
 
 import edged
 
 STUB = ast.parse(pathlib.Path(edged.__file__).with_name("__init__.pyi").read_text())
-DEFINITIONS = (ast.ClassDef, ast.FunctionDef)
-OF_EVERY_CLASS = {"__init__", "__repr__", "__str__"}
+CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef)}
 
 
-def names_of(body):
-    names = {node.name for node in body if isinstance(node, DEFINITIONS) and node.name != "_BodyState"}
-    return names | {node.target.id for node in body if isinstance(node, ast.AnnAssign)}
-
-
-def stub_class(name):
-    return next(node for node in STUB.body if isinstance(node, ast.ClassDef) and node.name == name)
-
-
-def members_of(name):
+def members_of(node):
     """With those that it inherits within the stub."""
-    node = stub_class(name)
-    names = names_of(node.body) | {target.id for item in node.body if isinstance(item, ast.Assign) for target in item.targets}
-    for base in node.bases:
-        if isinstance(base, ast.Name) and base.id.startswith("_"):
-            names |= members_of(base.id)
-    return names
+    inherited = [member for base in node.bases if ast.unparse(base) in CLASSES for member in members_of(CLASSES[ast.unparse(base)])]
+    return inherited + [member for member in node.body if isinstance(member, ast.FunctionDef)]
 
 
-def test_every_public_name_of_the_module_is_in_the_stub_and_the_other_way_round():
-    assert names_of(STUB.body) - {"__all__"} == set(edged.__all__)
-    assert all(hasattr(edged, name) for name in edged.__all__)
+def definitions():
+    """Every public class, function, method and property: its name, its node in the stub, what the module has."""
+    for node in STUB.body:
+        if isinstance(node, ast.FunctionDef):
+            yield node.name, node, getattr(edged, node.name)
+        elif isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            found = getattr(edged, node.name)
+            yield node.name, node, found
+            for member in members_of(node):
+                yield f"{node.name}.{member.name}", member, getattr(found, member.name)
 
 
-def test_every_member_of_a_class_is_in_the_stub_and_the_other_way_round():
-    for name in edged.__all__:
-        found = getattr(edged, name)
-        if not inspect.isclass(found) or name == "InputError":
+def help_of(found):
+    return inspect.getdoc(found) or ""
+
+
+def variables_of(node):
+    """Each name that a module or class declares, with the docstring below it."""
+    for variable, below in zip(node.body, [*node.body[1:], None]):
+        if isinstance(variable, ast.AnnAssign):
+            has_doc = isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant)
+            yield ast.unparse(variable.target), inspect.cleandoc(below.value.value) if has_doc else None
+
+
+def test_the_stub_names_what_the_module_exports():
+    named = {name for name, _, _ in definitions() if "." not in name} | {name for name, _ in variables_of(STUB)}
+    assert named == set(vars(edged)["__all__"])
+
+
+def test_every_public_name_has_the_docstring_of_the_stub():
+    for name, node, found in definitions():
+        text = ast.get_docstring(node)
+        assert text, f"{name} has no docstring in the stub"
+        assert text in help_of(found), name
+    for owner, node in ((edged, STUB), (edged.Status, CLASSES["Status"])):
+        for name, text in variables_of(node):
+            assert text, f"{name} has no docstring in the stub"
+            assert f"{name}: {text}" in help_of(owner), name
+    assert help_of(edged).startswith("Edged USLAM: ")
+
+
+def test_a_text_is_written_once():
+    for source in ("__init__.py", "_program.py"):
+        tree = ast.parse(pathlib.Path(edged.__file__).with_name(source).read_text())
+        again = {node.name for node in tree.body if isinstance(node, ast.FunctionDef) and ast.get_docstring(node)}
+        assert not again & {name for name, _, _ in definitions()}, source
+
+
+def test_every_argument_of_what_is_compiled_is_in_the_stub_with_its_default():
+    count = 0
+    for name, node, found in definitions():
+        if not isinstance(node, ast.FunctionDef) or isinstance(found, property) or inspect.isfunction(found):
             continue
-        mine = {member for member in vars(found) if not member.startswith("_") or member in ("__iter__", "__next__")}
-        of_enums = {"name", "value"} if name == "Status" else set()
-        assert mine - of_enums == members_of(name) - OF_EVERY_CLASS, name
-
-
-def test_every_argument_of_a_function_written_in_python_is_in_the_stub():
-    for node in STUB.body:
-        if isinstance(node, ast.FunctionDef) and inspect.isfunction(getattr(edged, node.name)):
-            mine = list(inspect.signature(getattr(edged, node.name)).parameters)
-            assert mine == [argument.arg for argument in [*node.args.args, *filter(None, [node.args.kwarg])]], node.name
-
-
-def test_every_argument_of_a_function_of_the_library_is_in_the_stub():
-    for node in STUB.body:
-        if isinstance(node, ast.FunctionDef) and not inspect.isfunction(getattr(edged, node.name)):
-            signature = getattr(edged, node.name).__doc__.splitlines()[0]
-            for argument in node.args.args:
-                assert f"{argument.arg}:" in signature, (node.name, signature)
+        count += 1
+        signature = found.__doc__.splitlines()[0]
+        given = node.args.args
+        assert re.findall(r"[(, ](\w+): ", signature) == [argument.arg for argument in given], (name, signature)
+        with_default = given[len(given) - len(node.args.defaults):]
+        for argument, default in zip(with_default, node.args.defaults):
+            assert re.search(rf"\b{argument.arg}: [^=:]* = {re.escape(ast.unparse(default))}[,)]", signature), (name, argument.arg)
+    assert count > 30
