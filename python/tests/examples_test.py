@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """The examples, and the listings of docs/python.md and docs/tutorial.md, run."""
+import json
 import pathlib
 import re
 import subprocess
 import sys
 
 import pytest
+from support import code_cells, notebooks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "python" / "examples"
@@ -26,10 +28,38 @@ def test_arrays_of_ones_own_are_followed(tmp_path):
     assert re.fullmatch(r"\d+ packets; left out: .*", lines[-1])
 
 
-def test_a_run_is_drawn(tmp_path):
+@pytest.fixture
+def matplotlib(monkeypatch):
     pytest.importorskip("matplotlib", reason="python3-matplotlib is not installed (scripts/setup.sh leaves it out: it is large)")
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+
+
+@pytest.mark.usefixtures("matplotlib")
+def test_a_run_is_drawn(tmp_path):
     run(EXAMPLES / "plot_run.py", "sim:room", "--seconds", 4, cwd=tmp_path)
     assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("notebook", notebooks(), ids=lambda path: path.stem)
+def test_a_notebook_runs_up_to_its_plots(notebook, tmp_path):
+    (tmp_path / "notebook.py").write_text("".join(cell for cell in code_cells(notebook) if "matplotlib" not in cell))
+    told = re.search(r"(\d+) poses, ([\d.]+) mm off", run(tmp_path / "notebook.py", cwd=tmp_path))
+    assert told and int(told[1]) > 80 and float(told[2]) < 20
+
+
+@pytest.mark.usefixtures("matplotlib")
+@pytest.mark.parametrize("notebook", notebooks(), ids=lambda path: path.stem)
+def test_a_notebook_draws_its_plots(notebook, tmp_path):
+    (tmp_path / "notebook.py").write_text("".join(code_cells(notebook)) + "plt.savefig('plot.png')\n")
+    run(tmp_path / "notebook.py", cwd=tmp_path)
+    assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("notebook", notebooks(), ids=lambda path: path.stem)
+def test_a_notebook_is_small_and_without_outputs(notebook):
+    cells = json.loads(notebook.read_text())["cells"]
+    assert all(cell["outputs"] == [] and cell["execution_count"] is None for cell in cells if cell["cell_type"] == "code")
+    assert notebook.stat().st_size < 10_000
 
 
 def listings_of(page, language):

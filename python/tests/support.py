@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the module share. $EDGED: the program, for what must be the same."""
 import csv
+import json
 import os
 import pathlib
 import subprocess
@@ -10,7 +11,8 @@ import numpy as np
 
 import edged
 
-DATA = pathlib.Path(os.environ.get("EDGED_DATA", pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATA = pathlib.Path(os.environ.get("EDGED_DATA", ROOT.parent / "shared" / "data"))
 
 
 LEAVES_STATES = (0, 4, 5)  # exit codes of edged run: good, never good, not to be trusted
@@ -20,6 +22,16 @@ def program(*arguments):
     done = subprocess.run([os.environ["EDGED"], *map(str, arguments)], capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode in LEAVES_STATES, done.stderr
     return done.stdout
+
+
+def notebooks():
+    found = sorted((ROOT / "python" / "examples").glob("*.ipynb"))
+    assert found
+    return found
+
+
+def code_cells(notebook):
+    return ["".join(cell["source"]) + "\n" for cell in json.loads(notebook.read_text())["cells"] if cell["cell_type"] == "code"]
 
 
 def states(folder):
