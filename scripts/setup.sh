@@ -14,7 +14,7 @@ packages=(
   libhdf5-dev libblosc-dev liblzf-dev liboctomap-dev
   cyclonedds-dev                                           # topics of ROS 2
   cyclonedds-tools libfastrtps-dev libfastcdr-dev          # their tests
-  pybind11-dev python3-dev python3-numpy python3-pip python3-pytest python3-yaml
+  pybind11-dev python3-dev python3-numpy python3-pip python3-pytest python3-yaml mypy
   python3-rosbag libgtest-dev libgmock-dev libbenchmark-dev
   "$@"
 )

@@ -18,7 +18,7 @@ BATCH_NS = 10_000_000
 def sensors(seconds):
     """The calibration; columns t, x, y, p of events; frames as (t, image); columns t, gyro, accel of the IMU."""
     flight = edged.simulate("room", seed=1, end_s=seconds + 0.1)
-    data = {"events": [], "frame": [], "imu": []}
+    data: dict[str, list] = {"events": [], "frame": [], "imu": []}
     for measurement in flight:
         if measurement.kind == "imu" or measurement.t < 1e9 * seconds:  # a packet needs IMU samples beyond its end
             data[measurement.kind].append((measurement.t, measurement.data))

@@ -7,7 +7,7 @@ from support import room
 
 import edged
 
-WITH = {"height.rate_hz": 25, "velocity.rate_hz": 50}
+WITH: dict[str, float] = {"height.rate_hz": 25, "velocity.rate_hz": 50}
 
 
 def test_a_recording_gives_the_samples_of_its_sensors_in_order():
@@ -46,7 +46,7 @@ def test_samples_are_taken_counted_and_refused_where_they_cannot_be():
 
 
 def test_without_samples_nothing_changes():
-    plain, same = (list(edged.simulate("room", 1, end_s=1, options=options)) for options in ({}, WITH))
+    plain, same = (list(edged.simulate("room", 1, end_s=1, options=options)) for options in (dict[str, float](), WITH))
     same = [m for m in same if m.kind not in ("height", "velocity")]
 
     def of(kind, measurements):

@@ -11,7 +11,7 @@ def follow(recording, the_map=None):
     if the_map is not None:
         odometry.load_map(the_map)
         assert odometry.awaiting_relocalization and odometry.save_map() is None
-    steps = []
+    steps: list[edged.Step] = []
     for measurement in recording:
         odometry.add(measurement)
         steps += odometry
@@ -35,9 +35,10 @@ def test_a_map_that_is_only_localized_in_never_changes():
     first, _ = follow(edged.simulate("room", 5, duration_s=9))
     the_map = first.save_map()
     recording = edged.simulate("room", 5, duration_s=9, begin_s=4)
+    assert recording.calibration
     odometry = edged.Odometry(recording.calibration, "frames", {"map.localize_only": True}, in_order=True)
     odometry.load_map(the_map)
-    steps = []
+    steps: list[edged.Step] = []
     for measurement in recording:
         odometry.add(measurement)
         steps += odometry
@@ -51,4 +52,4 @@ def test_what_is_no_map_is_refused():
     with pytest.raises(edged.InputError, match="no map"):
         odometry.load_map(b"garbage")
     with pytest.raises(TypeError):
-        odometry.load_map(3)
+        odometry.load_map(3)  # type: ignore[arg-type]

@@ -52,7 +52,9 @@ def test_several_cameras_of_a_kind_are_read_where_they_are_asked_for(flight, tmp
 
 
 def test_ground_truth_comes_as_poses(flight):
-    frame, poses = edged.open_recording(flight).ground_truth
+    truth = edged.open_recording(flight).ground_truth
+    assert truth
+    frame, poses = truth
     assert frame == "events"
     assert poses.dtype == edged.POSE
     assert np.allclose(np.linalg.norm(poses["quaternion"], axis=1), 1)
@@ -87,7 +89,7 @@ def test_what_cannot_be_repaired_is_one_line(flight, tmp_path):
     assert "cut.bag" in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
     with pytest.raises(edged.InputError, match="time_unit"):
-        edged.open_recording(flight, time_unit="fortnights")
+        edged.open_recording(flight, time_unit="fortnights")  # type: ignore[arg-type]
 
 
 def test_a_recording_without_calibration_says_what_to_give(flight, tmp_path):

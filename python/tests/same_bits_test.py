@@ -36,7 +36,7 @@ def test_options_and_arrays_of_ones_own_give_the_states_of_the_program(tmp_path)
     recording = room(2)
     odometry = edged.Odometry(recording.calibration, "fused", {"estimator.iterations": 2, "packets.max_interval_s": 0.03},
                               in_order=True)
-    steps = []
+    steps: list[edged.Step] = []
     for measurement in recording:
         data = measurement.data.copy()
         if measurement.kind == "events":
@@ -74,6 +74,7 @@ def test_an_evaluation_has_the_numbers_of_the_program(tmp_path):
     program("simulate", "--duration", 6, "--out", flight, "--quiet")
     program("run", flight, "--mode", "frames", "--quiet", "--out", tmp_path / "run")
     recording = edged.open_recording(flight)
+    assert recording.ground_truth
     frame, truth = recording.ground_truth
     estimate = edged.trajectory(edged.run(recording, "frames"), frame)
     told = json.loads(program("eval", flight / "groundtruth.txt", tmp_path / "run" / "trajectory.tum", "--json", "--protocol", "P4"))

@@ -24,7 +24,7 @@ def test_measurements_from_threads_give_the_same_bits_as_in_order():
     threads = [threading.Thread(target=driver, args=(kind,)) for kind in ("events", "frame", "imu")]
     for thread in threads:
         thread.start()
-    steps = []
+    steps: list[edged.Step] = []
     while any(thread.is_alive() for thread in threads):
         steps += odometry
         odometry.newest_state()
