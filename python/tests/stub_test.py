@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""The stub says what the module is: its docstrings, and the arguments of what is compiled. types_test.py compares the names."""
+"""The stub says what the module is: its names, docstrings, and the arguments of what is compiled. types_test.py
+compares the rest."""
 import ast
 import inspect
 import pathlib
@@ -14,7 +15,8 @@ CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDe
 
 def members_of(node):
     """With those that it inherits within the stub."""
-    inherited = [member for base in node.bases if ast.unparse(base) in CLASSES for member in members_of(CLASSES[ast.unparse(base)])]
+    bases = [CLASSES[ast.unparse(base)] for base in node.bases if ast.unparse(base) in CLASSES]
+    inherited = [member for base in bases for member in members_of(base)]
     return inherited + [member for member in node.body if isinstance(member, ast.FunctionDef)]
 
 
@@ -77,5 +79,6 @@ def test_every_argument_of_what_is_compiled_is_in_the_stub_with_its_default():
         assert re.findall(r"[(, ](\w+): ", signature) == [argument.arg for argument in given], (name, signature)
         with_default = given[len(given) - len(node.args.defaults):]
         for argument, default in zip(with_default, node.args.defaults):
-            assert re.search(rf"\b{argument.arg}: [^=:]* = {re.escape(ast.unparse(default))}[,)]", signature), (name, argument.arg)
+            wanted = rf"\b{argument.arg}: [^=:]* = {re.escape(ast.unparse(default))}[,)]"
+            assert re.search(wanted, signature), (name, argument.arg)
     assert count > 30

@@ -31,7 +31,8 @@ def notebooks():
 
 
 def code_cells(notebook):
-    return ["".join(cell["source"]) + "\n" for cell in json.loads(notebook.read_text())["cells"] if cell["cell_type"] == "code"]
+    cells = json.loads(notebook.read_text())["cells"]
+    return ["".join(cell["source"]) + "\n" for cell in cells if cell["cell_type"] == "code"]
 
 
 def states(folder):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-"""mypy finds nothing in stub, examples, notebooks and tests, and its stubtest no difference between stub and module. Settings:
-pyproject.toml."""
+"""mypy finds nothing in stub, examples, notebooks and tests, and its stubtest no difference between stub and module.
+Settings: pyproject.toml."""
 import importlib.util
 import pathlib
 import subprocess
@@ -22,7 +22,8 @@ def mypy_is_there():
 
 
 def check(*command):
-    done = subprocess.run([sys.executable, "-B", "-m", *map(str, command)], capture_output=True, text=True, check=False, cwd=ROOT, timeout=300)
+    done = subprocess.run([sys.executable, "-B", "-m", *map(str, command)], capture_output=True, text=True, check=False,
+                          cwd=ROOT, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
