@@ -163,7 +163,9 @@ void add_target_options(CLI::App& calib, TargetOptions& options) {
   calib.add_option(
       "--ratio", options.ratio,
       "Of the target: gap over side of a tag (Kalibr's tagSpacing) [0.3]; charuco: marker over square [0.75]");
-  calib.add_option("--lens", options.lens, "With --target: model of the lenses; auto: radtan, or equidistant where it leaves a fifth less")
+  calib
+      .add_option("--lens", options.lens,
+                  "With --target: model of the lenses; auto: radtan, or equidistant where it leaves a fifth less")
       ->check(CLI::IsMember(lens_names()))
       ->capture_default_str();
   calib
