@@ -210,7 +210,8 @@ int calibrate_from_target(const CalibOptions& options) {
   StatusLine status(options.quiet);
   ViewCollector collector(result.target, collector_options(options, recording));
   collect(*recording.dataset, collector, status);
-  if (interrupt_signal() != 0) return exit_code_of_interrupt();
+  // Ctrl-C ends a live recording, which is calibrated, and breaks off another.
+  if (interrupt_signal() != 0 && !is_live(source)) return exit_code_of_interrupt();
   const std::vector<TargetViews> cameras = collector.cameras();
   if (cameras.empty())
     throw InputError::format("{}: there are no pictures and no events; check --mode and --cameras", result.recording);

@@ -49,7 +49,7 @@ std::string camera_text(const TargetCalibration& result, std::size_t i) {
   std::string out =
       fmt::format("camera {}: {} x {} px, {}, target in {} of {}, corners in {:.0f} % of the image\n", views.name,
                   views.width, views.height, to_string(camera.lens.distortion), views.views.size(),
-                  quantity(views.pictures, "picture"), 100.0 * result.coverage[i].share);
+                  quantity(views.pictures, "picture"), 100.0 * result.coverage[i].cells.share());
   const auto names = parameter_names(camera.lens);
   for (std::size_t k = 0; k < names.size(); ++k)
     out += fmt::format("  {:<12} {:>12.{}f} +- {:.{}f}{}\n", names[k], camera.lens.values[k], k < 4 ? 3 : 6,
@@ -81,7 +81,7 @@ ordered_json camera_json(const TargetCalibration& result, std::size_t i) {
                       {"pictures", views.pictures},
                       {"views", views.views.size()},
                       {"corners", camera.residuals.size()},
-                      {"coverage", result.coverage[i].share},
+                      {"coverage", result.coverage[i].cells.share()},
                       {"tilt_deg", {result.coverage[i].tilt_x / kDegree, result.coverage[i].tilt_y / kDegree}},
                       {"distance_m", {result.coverage[i].nearest_m, result.coverage[i].farthest_m}},
                       {"reprojection_px", {{"median", median_px(camera)}, {"rms", rms_px(camera)}}}};
@@ -151,8 +151,9 @@ std::string target_page(const TargetCalibration& result) {
     for (const CornerResidual& r : camera.residuals) begin = begin ? std::min(*begin, r.t) : r.t;
   for (std::size_t i = 0; i < result.cameras.size(); ++i) {
     ordered_json& camera = data["cameras"][i];
-    camera["cells"] = {
-        {"columns", ViewCoverage::kColumns}, {"rows", ViewCoverage::kRows}, {"corners", result.coverage[i].corners}};
+    camera["cells"] = {{"columns", CornerCells::kColumns},
+                       {"rows", CornerCells::kRows},
+                       {"corners", result.coverage[i].cells.corners}};
     const auto& residuals = result.fit.cameras[i].residuals;
     const std::size_t step = residuals.size() / kMostShown + 1;
     ordered_json list = ordered_json::array();

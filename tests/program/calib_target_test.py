@@ -5,13 +5,28 @@
 Usage: EDGED=path/to/edged calib_target_test.py"""
 import json
 import math
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
 import unittest
 
 import yaml
 
-from program import WithFlight, WithFolder, edged
+from program import EDGED, WithFlight, WithFolder, edged
 
 GRID = ("--target", "aprilgrid", "--rows", 3, "--columns", 4, "--size", 80)
+
+
+def packets_of(aedat4):
+    """The file as a server sends it: without its magic line and the table at its end."""
+    data = aedat4.read_bytes().split(b"\r\n", 1)[1]
+    end = 4 + struct.unpack_from("<I", data)[0]
+    while end + 8 <= len(data) and 0 <= struct.unpack_from("<i", data, end)[0] < 8:
+        end += 8 + struct.unpack_from("<i", data, end + 4)[0]
+    return data[:end]
 
 
 class FromARecording(WithFlight):
@@ -57,6 +72,27 @@ class FromARecording(WithFlight):
             read = json.loads(edged("calib", out, "--camera", "frames=frames", "--json").stdout)
             self.assertEqual(read["has_extrinsics"], form == "kalibr")
             self.assertAlmostEqual(read["cameras"][0]["intrinsics_px"][0], 199.37, delta=0.5)
+
+    def test_a_live_camera_is_calibrated_once_it_is_ended(self):
+        recording = self.folder / "flight.aedat4"
+        self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
+        server = self.enterContext(socket.create_server(("127.0.0.1", 0)))
+        options = (f"tcp://127.0.0.1:{server.getsockname()[1]}", *GRID, "--mode", "frames", "--json")
+        with subprocess.Popen([EDGED, "calib", *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as program:
+            shown = []
+            reader = threading.Thread(target=lambda: shown.extend(program.stderr))
+            reader.start()
+            client, _ = server.accept()
+            with client:
+                client.sendall(packets_of(recording))
+                time.sleep(2)
+                program.send_signal(signal.SIGINT)
+                said = json.loads(program.stdout.read())
+                reader.join()
+        self.assertEqual(program.returncode, 0, shown)
+        self.assert_true(said["cameras"], 2)
+        self.assertIn("target in frames ", "".join(shown))
 
     def test_what_is_missing_is_told(self):
         result = edged("calib", self.flight, "--target", "checkerboard", "--mode", "frames", "--to", 2, "--quiet")

@@ -43,7 +43,9 @@ TargetViews& ViewCollector::camera(const std::string& name, Modality modality, c
 void ViewCollector::search(TargetViews& camera, Timestamp t, const cv::Mat& picture) {
   ++camera.pictures;
   std::vector<TargetCorner> corners = detector_.detect(picture);
-  if (!corners.empty()) camera.views.push_back({t, std::move(corners)});
+  if (corners.empty()) return;
+  camera.views.push_back({t, std::move(corners)});
+  cells_[camera.name].add(camera.views.back(), camera.width, camera.height);
 }
 
 void ViewCollector::take_frame(const Frame& frame) {
@@ -83,8 +85,12 @@ std::vector<TargetViews> ViewCollector::cameras() const {
 
 std::string ViewCollector::progress() const {
   std::string out;
-  for (const auto& [name, camera] : cameras_)
-    out += fmt::format("{}{} {} of {}", out.empty() ? "" : ", ", name, camera.views.size(), camera.pictures);
+  for (const auto& [name, camera] : cameras_) {
+    const auto cells = cells_.find(name);
+    const std::string missing = cells == cells_.end() ? "all of the image" : cells->second.empty_parts();
+    out += fmt::format("{}{} {} of {}{}{}", out.empty() ? "" : "; ", name, camera.views.size(), camera.pictures,
+                       missing.empty() ? "" : ", missing ", missing);
+  }
   return out;
 }
 

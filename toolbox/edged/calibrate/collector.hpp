@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/calibrate/coverage.hpp"
 #include "edged/calibrate/target_picture.hpp"
 #include "edged/calibrate/target_view.hpp"
 
@@ -36,7 +37,8 @@ class ViewCollector {
   std::vector<TargetViews> cameras() const;
   const std::vector<ImuSample>& imu() const { return imu_; }
   const TargetLayout& layout() const { return detector_.layout(); }
-  /// "frames 40 of 52, events 20 of 33": views with the target of pictures searched.
+  /// "frames 40 of 52, missing upper left, top; events 20 of 33": views with the target of pictures searched, and the
+  /// parts of the image where it has not been.
   std::string progress() const;
 
  private:
@@ -54,6 +56,7 @@ class ViewCollector {
   TargetDetector detector_;
   CollectorOptions options_;
   std::map<std::string, TargetViews> cameras_;
+  std::map<std::string, CornerCells> cells_;  // of each camera
   std::map<std::string, EventCamera> event_cameras_;
   std::map<std::string, Timestamp> last_frame_;
   std::vector<ImuSample> imu_;

@@ -10,10 +10,21 @@
 
 namespace edged {
 
-struct ViewCoverage {
+/// How many corners lie in each cell of the image.
+struct CornerCells {
   static constexpr int kColumns = 8, kRows = 6;
-  std::vector<std::size_t> corners;  ///< in each cell of the image, row by row
-  double share = 0.0;                ///< share of the cells that have some
+  std::vector<std::size_t> corners =
+      std::vector<std::size_t>(static_cast<std::size_t>(kColumns * kRows), 0);  ///< by row
+
+  void add(const TargetView& view, int width, int height);
+  /// Share of the cells that have some.
+  double share() const;
+  /// "upper left, top": the ninths of the image where most cells have none.
+  std::string empty_parts() const;
+};
+
+struct ViewCoverage {
+  CornerCells cells;
   /// Standard deviation of the target's tilt about the x and the y axis of the camera [rad].
   double tilt_x = 0.0, tilt_y = 0.0;
   double nearest_m = 0.0, farthest_m = 0.0;  ///< the middle of the target from the camera

@@ -23,7 +23,7 @@ Judged judged(const TargetViews& camera, const TargetLayout& layout) {
 TEST(Coverage, IsCompleteWithViewsAllOver) {
   const TargetLayout layout = layout_of(usual_target(TargetKind::AprilGrid));
   const Judged all = judged(views_through(lenses_of_the_tests()[0], layout, 60, 0.05, 3), layout);
-  EXPECT_GT(all.coverage.share, 0.95);
+  EXPECT_GT(all.coverage.cells.share(), 0.95);
   EXPECT_TRUE(all.missing.needed.empty());
   EXPECT_TRUE(all.missing.advised.empty());
 }
@@ -38,6 +38,17 @@ TEST(Coverage, NamesThePartsOfTheImageWithoutCorners) {
   ASSERT_FALSE(missing.needed.empty());
   EXPECT_NE(missing.needed[0].find("camera cam1: corners of the target in 3"), std::string::npos) << missing.needed[0];
   EXPECT_NE(missing.needed[0].find("upper right"), std::string::npos) << missing.needed[0];
+}
+
+TEST(Coverage, NamesNoPartOnceMostOfItsCellsHaveCorners) {
+  CornerCells cells;
+  EXPECT_EQ(cells.empty_parts(), "upper left, top, upper right, left, middle, right, lower left, bottom, lower right");
+  TargetView left;
+  for (int y = 0; y < 60; y += 5)
+    for (int x = 0; x < 50; x += 5) left.corners.push_back({0, {x, y}});
+  cells.add(left, 80, 60);
+  EXPECT_EQ(cells.share(), 0.625);
+  EXPECT_EQ(cells.empty_parts(), "upper right, right, lower right");
 }
 
 }  // namespace
