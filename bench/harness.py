@@ -160,17 +160,22 @@ def calibration_option(rig):
     return [] if rig is None else ["--calib" if isinstance(rig, pathlib.Path) else "--rig", rig]
 
 
-def extent(edged, cache, path, rig, modes, extra=()):
-    """Begin of the recording [s], and from when to when all streams are there that a mode needs, by mode, of those that it has
-    sensors for; kept in the cache. extra: further arguments that say what is read."""
+def info(edged, cache, path, rig, extra=()):
+    """What `edged info` says of a recording; kept in the cache. extra: further arguments that say what is read."""
     read = "".join(map(str, extra))
     known = cache / "info" / f"{file_name(str(path.resolve()) + read)}_{path.stat().st_mtime_ns}.json"
     if not known.exists():
         known.parent.mkdir(parents=True, exist_ok=True)
         known.write_text(call([edged, "info", path, "--json", "--quiet", *calibration_option(rig), *extra]))
-    info = json.loads(known.read_text())
-    there = {kind: info[kind] for kind in ("events", "frames", "imu") if info[kind]["count"] > 0}
-    return 1e-9 * min(stream["begin_ns"] for stream in there.values()), {
+    return json.loads(known.read_text())
+
+
+def extent(edged, cache, path, rig, modes, extra=()):
+    """Begin of the recording [s], and from when to when all streams are there that a mode needs, by mode, of those that it has
+    sensors for. extra: as of info."""
+    streams = info(edged, cache, path, rig, extra)
+    there = {kind: streams[kind] for kind in ("events", "frames", "imu") if streams[kind]["count"] > 0}
+    return 1e-9 * min((stream["begin_ns"] for stream in there.values()), default=0), {
         mode: (1e-9 * max(there[kind]["begin_ns"] for kind in STREAMS[mode]),
                1e-9 * min(there[kind]["end_ns"] for kind in STREAMS[mode]))
         for mode in modes if there.keys() >= set(STREAMS[mode])}
