@@ -7,6 +7,7 @@ Usage: EDGED=path/to/edged bench_test.py"""
 import importlib.machinery
 import importlib.util
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -45,7 +46,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "revisits", "silence", "sim_suite", "space", "speed", "starts",
+        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "real", "revisits", "silence", "sim_suite", "space", "speed", "starts",
                      "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
@@ -290,6 +291,16 @@ class Bench(unittest.TestCase):
                                ("edged 0.1.0 (00000000)", "not in")):
             self.assertIn(words, figures.what_differs(version))
         self.assertIn("--out", bench("figures", "--quick").stderr)
+
+    @unittest.skipUnless((pathlib.Path(harness.DEFAULT_PROGRAM).parent / "edged_camera_test").exists(), "needs the tests of the build")
+    def test_real_names_what_the_data_folder_lacks_and_measures_what_it_has(self):
+        self.assertIn("\nNot there: euroc_mh01, ", bench("real", "--data", self.folder, "--cache", self.folder).stdout)
+        data = pathlib.Path(os.environ.get("EDGED_DATA", BENCH / "../../shared/data"))
+        if not (data / "calib_april").exists():
+            self.skipTest("no data")
+        result = bench("real", "--data", data, "--cache", self.folder, "--only", "calib_april")
+        row = next(line for line in result.stdout.splitlines() if line.startswith("| April grid, 8 pairs"))
+        self.assertLess(max(abs(float(x)) for x in re.findall(r"[+-][\d.]+", row)), 1.0)  # px and mm off the published calibration
 
     def test_speed_prints_a_row_a_sensor_and_mode(self):
         result = bench("speed", "--no-data", "--sensors", "240x180@1", "--duration", 2.5, "--modes", "frames", "--repeats", 1,
