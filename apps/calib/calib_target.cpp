@@ -104,6 +104,35 @@ void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& camer
   if (!needed.empty()) throw InputError("too little for a calibration: " + needed);
 }
 
+/// The rotations between successive views, in pieces of 10 s, over which a drift shows.
+std::vector<std::vector<Turn>> turns_of(const TargetCamera& camera) {
+  constexpr Duration kPiece = std::chrono::seconds(10), kLongest = std::chrono::milliseconds(300);
+  std::vector<std::vector<Turn>> pieces;
+  const std::vector<TargetView>& views = camera.views.views;
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    const auto &from = camera.lens.T_C_T[i - 1], &to = camera.lens.T_C_T[i];
+    if (!from || !to || views[i].t - views[i - 1].t > kLongest) continue;
+    if (pieces.empty() || views[i].t - pieces.back().front().begin > kPiece) pieces.emplace_back();
+    pieces.back().push_back({views[i - 1].t, views[i].t, so3::log(from->rotation() * to->rotation().conjugate())});
+  }
+  return pieces;
+}
+
+/// The samples on the clock of the cameras, which the rotations of one of them determine.
+std::vector<ImuSample> with_found_clock(std::vector<ImuSample> imu, TargetCalibration& result) {
+  std::optional<ImuOffset> found;
+  for (const TargetCamera& camera : result.cameras) {
+    found = find_imu_offset(turns_of(camera), imu, {camera.views.name, camera.views.modality, {}, {}, {}}, false);
+    if (found->determined()) break;
+  }
+  if (!found->determined()) throw undetermined_offset(result.recording, result.cameras.back().views.name, *found);
+  result.imu_clock = {{found->offset, found->rate}, found};
+  const Timestamp first = imu.front().t;
+  for (ImuSample& sample : imu)
+    sample.t = first + found->offset + duration_from_seconds(to_seconds(sample.t - first) / found->rate);
+  return imu;
+}
+
 std::filesystem::path beside(const std::filesystem::path& out, const std::string& end) {
   std::filesystem::path path = out;
   return path.replace_filename(out.stem().string() + end);
@@ -204,6 +233,8 @@ int calibrate_from_target(const CalibOptions& options) {
   SourceOptions source = options.source_of_file();
   source.cameras = options.target.cameras;
   source.all_cameras = source.cameras.empty();
+  const bool find_clock = source.imu_time_offset == "auto";
+  if (find_clock) source.imu_time_offset = "0";  // its own clock, until the lens is known
   const Recording recording = open_uncalibrated(source);
   result.recording = recording.dataset->info().name;
   check_cameras(source.cameras, recording.dataset->info());
@@ -218,12 +249,13 @@ int calibrate_from_target(const CalibOptions& options) {
   fit_lenses(result, cameras, collector, options.target.lens, status);
   const bool known_noise = recording.calibration && recording.calibration->has_imu_noise;
   const ImuNoise noise = known_noise ? recording.calibration->imu : ImuNoise();
-  const std::vector<ImuSample> none;
+  std::vector<ImuSample> imu;
+  if (!options.target.no_imu) imu = collector.imu();
+  if (find_clock && !imu.empty()) imu = with_found_clock(std::move(imu), result);
   const RigFitOptions rig_options{.progress = [&status](int round) {
     status.show(fmt::format("all cameras, motion and IMU: round {}", round + 1));
   }};
-  const bool use_imu = !options.target.no_imu && !collector.imu().empty();
-  result.fit = fit_rig(result.cameras, collector.layout(), use_imu ? collector.imu() : none, noise, rig_options);
+  result.fit = fit_rig(result.cameras, collector.layout(), imu, noise, rig_options);
   status.clear();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string name = options.out.empty() ? result.recording : options.out.stem().string();

@@ -128,6 +128,9 @@ std::string to_text(const TargetCalibration& result) {
         "{:<11} gyro bias [{:.4f}, {:.4f}, {:.4f}] rad/s, accelerometer bias [{:.3f}, {:.3f}, {:.3f}] m/s^2\n", "imu",
         result.fit.bias_gyro.x(), result.fit.bias_gyro.y(), result.fit.bias_gyro.z(), result.fit.bias_accel.x(),
         result.fit.bias_accel.y(), result.fit.bias_accel.z());
+  if (result.imu_clock)
+    out += fmt::format("{:<11} {} added to its stamps, {}\n", "imu clock", offset_text(*result.imu_clock),
+                       offset_evidence(*result.imu_clock->found));
   for (const std::string& line : result.advice) out += fmt::format("{:<11} {}\n", "better", line);
   return out;
 }
@@ -138,6 +141,7 @@ ordered_json to_json(const TargetCalibration& result) {
                       {"seconds", result.seconds},     {"advice", result.advice}};
   for (std::size_t i = 0; i < result.cameras.size(); ++i) out["cameras"].push_back(camera_json(result, i));
   if (!result.fit.has_imu) return out;
+  if (result.imu_clock) out["imu_clock"] = to_json(*result.imu_clock);
   out["gyro_bias"] = vector_json(result.fit.bias_gyro);
   out["accel_bias"] = vector_json(result.fit.bias_accel);
   out["imu_misfit"] = result.fit.imu_misfit;

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/imu_clock.hpp"
 #include "edged/calibrate/coverage.hpp"
 #include "edged/calibrate/rig_fit.hpp"
 #include "edged/io/calibration_data.hpp"
@@ -18,8 +20,9 @@ struct TargetCalibration {
   std::string recording;
   TargetSpec target;
   std::vector<TargetCamera> cameras;
-  std::vector<ViewCoverage> coverage;  ///< of each camera
-  std::vector<std::string> advice;     ///< what a better recording has
+  std::vector<ViewCoverage> coverage;       ///< of each camera
+  std::vector<std::string> advice;          ///< what a better recording has
+  std::optional<ChosenImuClock> imu_clock;  ///< of --imu-time-offset auto
   RigFit fit;
   double seconds = 0.0;  ///< that it took
 };

@@ -5,8 +5,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "common/interrupt.hpp"
+#include "common/json_text.hpp"
 #include "common/reading.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
@@ -42,13 +44,6 @@ std::string why_undetermined(const ImuOffset& found) {
   return fmt::format("{}, but by {:.2f} at {:+.2f} s", best, match.next_correlation, -to_seconds(match.next_shift));
 }
 
-InputError undetermined(const std::string& name, const std::string& camera, const ImuOffset& found) {
-  return InputError::format(
-      "{}: --imu-time-offset auto: the turn rates of camera {} and gyro do not determine it: {}; turn the camera by "
-      "hand about several axes for 10 s when recording, check its calibration and the gyro's unit, or give the seconds",
-      name, camera, why_undetermined(found));
-}
-
 }  // namespace
 
 std::string offset_text(const ChosenImuClock& chosen) {
@@ -61,6 +56,23 @@ std::string offset_evidence(const ImuOffset& found) {
                        : std::string("too short to determine a drift");
   return fmt::format("+- {:.1f} ms, {}; turn rates correlate by {:.2f}, at other offsets by at most {:.2f}",
                      1e3 * found.sigma_s, drift, found.match->correlation, found.match->next_correlation);
+}
+
+nlohmann::ordered_json to_json(const ChosenImuClock& chosen) {
+  const ImuOffset& found = *chosen.found;
+  return {{"offset_s", to_seconds(chosen.clock.offset)},
+          {"rate", chosen.clock.rate},
+          {"offset_sigma_s", found.sigma_s},
+          {"rate_sigma", number_or_null(found.rate_sigma)},
+          {"correlation", found.match->correlation},
+          {"next_correlation", found.match->next_correlation}};
+}
+
+InputError undetermined_offset(const std::string& recording, const std::string& camera, const ImuOffset& found) {
+  return InputError::format(
+      "{}: --imu-time-offset auto: the turn rates of camera {} and gyro do not determine it: {}; turn the camera by "
+      "hand about several axes for 10 s when recording, check its calibration and the gyro's unit, or give the seconds",
+      recording, camera, why_undetermined(found));
 }
 
 ChosenImuClock determine_imu_clock(const std::function<Recording()>& reopen, double rate) {
@@ -85,7 +97,7 @@ ChosenImuClock determine_imu_clock(const std::function<Recording()>& reopen, dou
         "{}: --imu-time-offset auto: no camera of the calibration and IMU are in the recording; `edged info` lists "
         "both",
         name);
-  throw undetermined(name, camera, *found);
+  throw undetermined_offset(name, camera, *found);
 }
 
 std::optional<double> given_imu_offset_s(const std::string& text) {

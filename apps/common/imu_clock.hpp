@@ -4,10 +4,12 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "edged/checks/agreement/imu_offset.hpp"
+#include "edged/input_error.hpp"
 #include "edged/io/core/replaced_streams.hpp"
 #include "edged/io/recording.hpp"
 
@@ -23,10 +25,15 @@ struct ChosenImuClock {
 /// 0.41".
 std::string offset_text(const ChosenImuClock& chosen);
 std::string offset_evidence(const ImuOffset& found);
+/// Of one that was found.
+nlohmann::ordered_json to_json(const ChosenImuClock& chosen);
 
 /// Reads the recording through, once for each kind of camera until one determines the offset. reopen: opens it, without
 /// any correction. rate: of --imu-clock-rate. Throws InputError if the rotation does not determine it.
 ChosenImuClock determine_imu_clock(const std::function<Recording()>& reopen, double rate);
+
+/// Why the turn rates of this camera and the gyro do not determine the offset.
+InputError undetermined_offset(const std::string& recording, const std::string& camera, const ImuOffset& found);
 
 /// The seconds of --imu-time-offset; nothing for "auto". Throws InputError for other text.
 std::optional<double> given_imu_offset_s(const std::string& text);

@@ -124,14 +124,8 @@ void add_calibration(Figures& out, const std::vector<CalibrationFound>& calibrat
 
 /// What was done to the stamps of the IMU.
 void add_imu_clock(Figures& out, const ChosenImuClock& chosen) {
-  const ImuOffset& found = *chosen.found;
-  out.json["imu_clock"] = {{"offset_s", to_seconds(chosen.clock.offset)},
-                           {"rate", chosen.clock.rate},
-                           {"offset_sigma_s", found.sigma_s},
-                           {"rate_sigma", number_or_null(found.rate_sigma)},
-                           {"correlation", found.match->correlation},
-                           {"next_correlation", found.match->next_correlation}};
-  out.line("IMU clock", offset_text(chosen), "added to its stamps, " + offset_evidence(found));
+  out.json["imu_clock"] = to_json(chosen);
+  out.line("IMU clock", offset_text(chosen), "added to its stamps, " + offset_evidence(*chosen.found));
 }
 
 void add_progress(Figures& out, const RunStatistics& s) {

@@ -73,6 +73,18 @@ class FromARecording(WithFlight):
             self.assertEqual(read["has_extrinsics"], form == "kalibr")
             self.assertAlmostEqual(read["cameras"][0]["intrinsics_px"][0], 199.37, delta=0.5)
 
+    def test_an_imu_with_a_clock_of_its_own_is_brought_to_that_of_the_cameras(self):
+        def later(text):
+            return "".join(f"{float(t) + 812.25:.9f} {rest}" for t, rest in (line.split(" ", 1) for line in text.splitlines(True)))
+        recording = self.changed("imu.txt", later)
+        result = edged("calib", recording, *GRID, "--mode", "frames", "--imu-time-offset", "auto", "--json", "--quiet")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        said = json.loads(result.stdout)
+        self.assertLess(abs(said["imu_clock"]["offset_s"] + 812.25), 0.02)
+        # What the search leaves is the time offset of the camera.
+        said["cameras"][0]["time_offset_s"] += -812.25 - said["imu_clock"]["offset_s"]
+        self.assert_true(said["cameras"], 2)
+
     def test_a_live_camera_is_calibrated_once_it_is_ended(self):
         recording = self.folder / "flight.aedat4"
         self.assertEqual(edged("convert", self.flight, recording, "--quiet").returncode, 0)
