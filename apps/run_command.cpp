@@ -61,8 +61,8 @@ int run(RunOptions options) {
   print_result(options.json, to_json(summary), to_table(summary));
   for (const std::string& failure : summary.unwritten) spdlog::error(failure);
   if (interrupt_signal() != 0) return exit_code_of_interrupt();
-  if (!summary.unwritten.empty()) return kExitInput;
   if (summary.verdict.contradicted) return kExitNotTrusted;
+  if (!summary.unwritten.empty()) return kExitInput;
   return summary.statistics.first_good_s() ? kExitOk : kExitNeverGood;
 }
 

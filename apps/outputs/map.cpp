@@ -3,12 +3,7 @@
 #include "outputs/map.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
-
-#include <algorithm>
-#include <set>
 
 #include "common/files.hpp"
 #include "edged/core/check.hpp"
@@ -48,12 +43,8 @@ class RunMap : public RunObserver {
           "--save-map with --localize-only (map.localize_only): the map never changes; leave one of them out");
     if (!options_.save.empty()) check_writable(options_.save, "--save-map", beginning_of_maps());
     if (!options_.load.empty())
-      read_map_file(options_.load, [&](const std::string& bytes) {
-        run.products.get<InitialMap>() = {options_.load, bytes};
-        for (const MapKeyframe& keyframe : saved_map_from_bytes(bytes).keyframes)
-          for (const MapView& view : keyframe.views) made_by_.insert(view.camera);
-        return 0;
-      });
+      run.products.get<InitialMap>() = {options_.load,
+                                        read_map_file(options_.load, [](const std::string& bytes) { return bytes; })};
   }
 
   void on_step(const Step& step) override {
@@ -77,23 +68,21 @@ class RunMap : public RunObserver {
     if (!options_.load.empty() && !found_) end.summary.verdict.findings.push_back(not_found());
     if (options_.save.empty()) return;
     map_ = end.save_map();
-    if (map_ && !saved_map_from_bytes(*map_).keyframes.empty()) {
-      json["saved"] = options_.save.string();
-      figures.line("map saved", options_.save.string());
-      return;
-    }
-    const std::string why = map_ ? "no keyframe has left the window" : "this run was not relocalized in that of --map";
-    spdlog::warn(fmt::format("--save-map {}: not written, as {}", options_.save.string(), why));
-    end.summary.verdict.findings.push_back(
-        {Severity::Error, fmt::format("map: not saved to {}: {}", options_.save.string(), why),
-         map_ ? "record for longer, and move: a map consists of keyframes that have left the window"
-              : "start where the map of --map was made, or leave --map out"});
-    map_.reset();
+    if (!map_)
+      why_not_ = "this run was not relocalized in that of --map; start where that was made, or leave --map out";
+    else if (saved_map_from_bytes(*map_).keyframes.empty())
+      why_not_ = "no keyframe has left the window, and a map consists of those; record for longer, and move";
+    if (!why_not_.empty()) return;
+    json["saved"] = options_.save.string();
+    figures.line("map saved", options_.save.string());
   }
 
   /// Writes the map that is to be kept.
   void on_end(const RunEnd&) override {
-    if (map_) write_file(options_.save, *map_);
+    if (options_.save.empty()) return;
+    if (!why_not_.empty())
+      throw InputError::format("--save-map {}: not written, as {}", options_.save.string(), why_not_);
+    write_file(options_.save, *map_);
   }
 
  private:
@@ -107,27 +96,18 @@ class RunMap : public RunObserver {
                    localize_only() ? "there are no poses" : "poses are in a frame of their own");
   }
 
-  /// Keyframes are matched within one camera.
   Finding not_found() const {
     const std::string poses = localize_only() ? "there are no poses" : "the poses are in a frame of their own";
-    const auto used = [this](const std::string& name) {
-      return std::ranges::count(run_.used.cameras, name, &RigCamera::name) > 0;
-    };
-    if (std::ranges::none_of(made_by_, used))
-      return {Severity::Error,
-              fmt::format("map: never matched in {}: it was built with {}, which mode {} does not use",
-                          options_.load.string(), fmt::join(made_by_, " and "), mode_name(run_.mode)),
-              "build it in the same --mode; " + poses};
     return {Severity::Error, fmt::format("map: never matched in {}", options_.load.string()),
             poses + ": start where the map was made, facing the same way"};
   }
 
   const RunContext& run_;
   MapOptions options_;
-  std::set<std::string> made_by_;  ///< cameras of the map's keyframes
   std::optional<Timestamp> first_pose_, found_;
   std::size_t relocalized_ = 0;
-  std::optional<std::string> map_;  ///< to be written
+  std::optional<std::string> map_;  ///< of --save-map
+  std::string why_not_;             ///< and how to get one
 };
 
 }  // namespace

@@ -189,9 +189,8 @@ void add_live(Figures& out, const LiveSummary& live) {
            fmt::format("median; 95 % {:.1f} ms, 99 % {:.1f} ms, worst {:.1f} ms", 1e3 * latency.quantile_s(0.95),
                        1e3 * latency.quantile_s(0.99), 1e3 * latency.max_s()));
   if (live.dropped == DropCounters{} && live.dropped_packets == 0) return out.line("left out", "nothing");
-  out.line("left out", quantity(live.dropped.events, "event"),
-           fmt::format("{}, {}: too slow", quantity(live.dropped.frames, "frame"),
-                       quantity(live.dropped_packets, "packet")));
+  out.line("left out", fmt::format("{}, {}, {}: too slow", quantity(live.dropped.events, "event"),
+                                   quantity(live.dropped.frames, "frame"), quantity(live.dropped_packets, "packet")));
 }
 
 /// Repairs, what could not be written, and the verdict: the end of the table.
@@ -226,7 +225,7 @@ Figures figures_of(const RunSummary& s) {
 
 void Figures::line(const std::string& name, const std::string& value, const std::string& note) {
   table += note.empty() ? wrapped(fmt::format("  {:<20} {}", name, value), 23)
-                        : wrapped(fmt::format("  {:<20} {:<12} {}", name, value, note), 36);
+                        : wrapped(fmt::format("  {:<20} {:<11}  {}", name, value, note), 36);
   table += '\n';
 }
 

@@ -64,7 +64,7 @@ class RunDense : public RunObserver {
                              {"edge_pixels", counted.edges},
                              {"with_depth", counted.with_depth}};
     figures.line("dense depth", quantity(counted.keyframes, "keyframe"),
-                 fmt::format("{:.0f} % of their edge pixels; {} without parallax{}",
+                 fmt::format("{:.0f} % of their edge pixels; {} without parallax{}; dense.ply",
                              100.0 * static_cast<double>(counted.with_depth) / edges, counted.unmeasured,
                              dropped > 0 ? fmt::format("; {} left out: too slow", dropped) : ""));
   }

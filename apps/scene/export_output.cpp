@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/files.hpp"
+#include "common/text.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/dense/rectifier.hpp"
@@ -43,6 +44,12 @@ class RunExport : public RunObserver {
       add(step.t, camera, *seen, run_.rig.camera(seen->name).model);
       last_ = step.t;
     }
+  }
+
+  void on_summary(RunEnd& end) override {
+    end.summary.outputs.line(
+        "export", (folder_ / "").string(),
+        fmt::format("{}, sparse/0, transforms.json, points.ply", quantity(model_.images.size(), "image")));
   }
 
   void on_end(const RunEnd& end) override {

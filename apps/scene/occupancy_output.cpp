@@ -56,6 +56,11 @@ class RunOccupancy : public RunObserver {
     if (is_tracking(step.status) && step.keyframe) add_images(model_, step);
   }
 
+  void on_summary(RunEnd& end) override {
+    end.summary.outputs.line("occupancy", (options_.folder / "").string(),
+                             "occupancy.bt, occupancy.ot, map.pgm, map.yaml");
+  }
+
   void on_end(const RunEnd& end) override {
     place(model_, end.final_trajectory.poses, run_.rig);
     triangulate(model_);

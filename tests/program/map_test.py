@@ -98,14 +98,15 @@ class Maps(WithFlight):
         self.assertIn("not written", result.stderr)
         self.assertFalse(poster.exists())
 
-    def test_a_map_that_the_mode_cannot_match_is_a_finding(self):
-        fused = self.folder / "fused.map"  # whose keyframes are frames
-        made = edged("run", self.flight, "--duration", 6, "--save-map", fused, "--out", self.folder / "fused", "--quiet")
-        self.assertEqual(made.returncode, 0, made.stdout)
-        result = edged("run", self.flight, "--mode", "events", "--map", fused, "--out", self.folder / "run", "--json", "--quiet")
-        summary = json.loads(result.stdout)
-        self.assertEqual((result.returncode, summary["status"]), (5, "not to be trusted"))
-        self.assertIn(f"map: never matched in {fused}: it was built with frames, which mode events does not use", summary["verdict"])
+    def test_a_map_that_the_mode_cannot_match_is_refused_at_once(self):
+        fused, of_events = self.folder / "fused.map", self.folder / "events.map"  # keyframes of the first are frames
+        for the_map, mode in ((fused, "fused"), (of_events, "events")):
+            made = edged("run", self.flight, "--mode", mode, "--save-map", the_map, "--out", self.folder / mode, "--quiet")
+            self.assertEqual(made.returncode, 0, made.stdout)
+        for the_map, mode, of in ((fused, "events", "frames"), (of_events, "frames", "events")):
+            self.assert_refused(edged("run", self.flight, "--mode", mode, "--map", the_map, "--out", self.folder / "run", "--quiet"),
+                                str(the_map), f"its keyframes are of {of}; use it in a mode")
+            self.assertFalse((self.folder / "run").exists())
 
     def test_what_cannot_be_used_is_refused(self):
         damaged = self.folder / "damaged.map"

@@ -60,9 +60,17 @@ class Outputs(WithFlight):
         result = edged("run", self.flight, "--mode", "frames", "--duration", 0.8, "--save-map", the_map, "--out", self.folder / "run",
                        "--json", "--quiet")
         summary = json.loads(result.stdout)
-        self.assertEqual((result.returncode, summary["map"]["saved"]), (5, ""), summary["findings"])
-        self.assertTrue(any(f["text"].startswith("map: not saved to") for f in summary["findings"]))
+        self.assertEqual((result.returncode, summary["map"]["saved"]), (3, ""), summary["findings"])
+        self.assertEqual((summary["status"], summary["trusted"]), ("good", True), "the trajectory is none the worse")
+        self.assertRegex(" ".join(summary["unwritten"]), f"^--save-map {the_map}: not written, as no keyframe has left the window")
         self.assertFalse(the_map.exists())
+
+    def test_the_table_names_what_was_written_and_joins_no_columns(self):
+        table = edged("run", self.flight, "--mode", "frames", "--dense", "--export", "scene", "--occupancy", "space", "--out", "run", "--quiet",
+                      cwd=self.folder).stdout
+        for name, files in (("dense depth", "dense.ply"), ("export", "scene/  .* images, sparse/0"), ("occupancy", "space/  .*map.pgm")):
+            self.assertRegex(" ".join(table.split("\n")), f"  {name} .*{files}")
+        self.assertRegex(table, r"dense depth +\d+ keyframes?  +\d+ % of")
 
     def test_every_command_ends_with_the_next_step(self):
         out = self.folder / "run"

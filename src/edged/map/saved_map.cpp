@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/map/saved_map.hpp"
 
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <set>
 #include <type_traits>
 
 #include "edged/core/check.hpp"
@@ -218,10 +221,12 @@ void set_back(std::vector<MapKeyframe>& keyframes) {
 }  // namespace
 
 void check_fits(const SavedMap& map, const Rig& rig) {
-  bool any = false;
-  std::string names;
+  std::set<std::string> viewed;  // a run of frames and events may have mapped by frames alone
+  for (const MapKeyframe& keyframe : map.keyframes)
+    for (const MapView& view : keyframe.views) viewed.insert(view.camera);
+  bool any = viewed.empty();
   for (const SavedMap::Camera& camera : map.cameras) {
-    names += (names.empty() ? "" : ", ") + camera.name;
+    if (!viewed.contains(camera.name)) continue;
     const auto same = std::ranges::find(rig.cameras, camera.name, &RigCamera::name);
     if (same == rig.cameras.end()) continue;
     any = true;
@@ -234,7 +239,10 @@ void check_fits(const SavedMap& map, const Rig& rig) {
     }
   }
   if (!any)
-    throw InputError::format("created with other cameras: {}; use it in a mode and with a rig that have one", names);
+    throw InputError::format(
+        "created with other cameras: its keyframes are of {}; use it in a mode and with a rig that "
+        "have one",
+        fmt::join(viewed, ", "));
 }
 
 std::string to_bytes(const SavedMap& map) {

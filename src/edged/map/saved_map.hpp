@@ -29,7 +29,7 @@ struct SavedMap {
   std::vector<ConditionalPose> inactive{};  ///< their parents: active, or later in this list
 };
 
-/// Throws InputError where the rig has none of its cameras, or one of them with another lens.
+/// Throws InputError where the rig has none of the cameras of its keyframes, or one of them with another lens.
 void check_fits(const SavedMap& map, const Rig& rig);
 
 /// As bytes, little endian, with a version and a checksum. Of times only the order is kept: the last match of the

@@ -182,5 +182,14 @@ TEST(SavedMap, FitsTheLensItWasMadeWith) {
   EXPECT_THROW(check_fits(map, rig_with("cam7", 200.0)), InputError);
 }
 
+TEST(SavedMap, FitsACameraOnlyIfAKeyframeIsOfIt) {
+  SavedMap map = some_map();
+  EXPECT_NO_THROW(check_fits(map, rig_with("events", 205.0)));
+  for (MapKeyframe& keyframe : map.keyframes) keyframe.views[0].camera = "frames";
+  EXPECT_THROW(check_fits(map, rig_with("events", 205.0)), InputError);
+  map.keyframes.clear();
+  EXPECT_NO_THROW(check_fits(map, rig_with("events", 205.0)));
+}
+
 }  // namespace
 }  // namespace edged
