@@ -71,9 +71,7 @@ std::string map_ply(const std::vector<MappedKeyframe>& keyframes) {
 
 void write_final_trajectory(const std::filesystem::path& folder, const OutputFrame& frame, const FinalTrajectory& known,
                             const std::vector<std::string>& comments) {
-  TrajectoryWriter tum(folder / "trajectory_final.tum", TrajectoryFormat::Tum, comments);
-  for (const StampedPose& pose : known.poses) tum.add(frame(pose));
-  tum.flush();
+  write_tum(folder / "trajectory_final.tum", frame(known.poses), comments);
   write_file(folder / "keyframes.csv", keyframes_csv(known.keyframes));
   write_file(folder / "map.ply", map_ply(known.keyframes));
 }

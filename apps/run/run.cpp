@@ -12,6 +12,7 @@
 #include "common/files.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
+#include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/archive/zip_archive.hpp"
 #include "run/run_folder.hpp"
@@ -164,14 +165,19 @@ RunSummary Run::finish(RunReader& reader, bool broken_off) {
   const auto attempt = [&unwritten](const auto& write) {
     try {
       write();
+      return true;
     } catch (const InputError& e) {
       unwritten.emplace_back(e.what());
     } catch (const std::system_error& e) {
       unwritten.emplace_back(e.what());
     }
+    return false;
   };
   for (const auto& observer : observers_) attempt([&] { observer->on_end(end); });
-  if (!run_.archive.empty()) attempt([&] { zip_folder(run_.archive, run_.folder); });
+  if (!std::filesystem::exists(run_.folder / "report.html") && end.summary.verdict.trusted)
+    end.summary.verdict.next = fmt::format("make room, then edged report {}", shell_word(run_.folder.string()));
+  if (!run_.archive.empty() && !attempt([&] { zip_folder(run_.archive, run_.folder); }))
+    end.summary.run.archive.clear();
   end.summary.unwritten = std::move(unwritten);
   return end.summary;
 }

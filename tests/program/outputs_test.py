@@ -37,15 +37,17 @@ class Outputs(WithFlight):
         self.assertFalse(run.exists())
         self.assertEqual(bag.read_bytes(), b"#ROSBAG V2.0\n")
 
-    def test_a_disk_that_is_full_at_one_output_costs_no_other(self):
-        most = 150_000  # [bytes] of a file: album and report are larger, tables and trajectories are not
-
+    def run_with_files_up_to(self, most, *options):
+        """Of the flight into the folder `run`; a file cannot have more bytes."""
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        return subprocess.run([EDGED, "run", str(self.flight), "--mode", "frames", "--out", str(self.folder / "run"), "--quiet", *options],
+                              capture_output=True, text=True, check=False, timeout=300, preexec_fn=limit)
+
+    def test_a_disk_that_is_full_at_one_output_costs_no_other(self):
         out = self.folder / "run"
-        result = subprocess.run([EDGED, "run", str(self.flight), "--mode", "frames", "--out", str(out), "--quiet"], capture_output=True,
-                                text=True, check=False, timeout=300, preexec_fn=limit)
+        result = self.run_with_files_up_to(150_000)  # album and report are larger, tables and trajectories are not
         self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
         self.assertRegex(result.stderr, r"/run/\S+: cannot be written; is the disk full\?")
         self.assertRegex(result.stdout, r"not written +\S*/run/")
@@ -54,6 +56,20 @@ class Outputs(WithFlight):
         for name in ("trajectory.tum", "trajectory_final.tum", "states.csv", "keyframes.csv"):
             self.assertGreater((out / name).stat().st_size, 0, name)
         self.assertEqual([name for name in os.listdir(out) if name.endswith(".part")], [])
+
+    def test_what_a_full_disk_cut_short_neither_stays_nor_is_the_next_step(self):
+        out = self.folder / "run"
+        edged("run", self.flight, "--mode", "frames", "--out", out, "--quiet")
+        (out / "notes").write_bytes(os.urandom(100_000))  # which is packed as well
+        (out / "report.html.part").write_text("of a run that was killed")
+        result = self.run_with_files_up_to(70_000, "--force", "--archive")
+        self.assertIn("groundtruth.tum: cannot be written", result.stderr)
+        self.assertIn("run.zip: cannot be written", result.stderr)
+        self.assertNotRegex(result.stdout, r"\n  archive ")
+        self.assertRegex(result.stdout, rf"\n  next +make room, then edged report {out}\n$")
+        self.assertFalse({"groundtruth.tum", "report.html", "report.html.part"} & set(os.listdir(out)))
+        self.assertEqual(os.listdir(self.folder), ["run"])
+        self.assertEqual(edged("report", out).returncode, 0)
 
     def test_a_map_without_keyframes_is_not_kept(self):
         the_map = self.folder / "room.map"

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/core/whole_file.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
@@ -97,6 +98,12 @@ const WrittenForm& written_form(TrajectoryFormat format) {
   return format == TrajectoryFormat::Tum ? tum : euroc;
 }
 
+std::string heading_of(TrajectoryFormat format, const std::vector<std::string>& comments) {
+  std::string text;
+  for (const std::string& comment : comments) text += "# " + comment + '\n';
+  return text + written_form(format).heading;
+}
+
 }  // namespace
 
 Trajectory read_poses(const SourcePath& file, const TextTable& documented, const DamageHandler& on_damage) {
@@ -141,9 +148,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, Trajectory
                                    const std::vector<std::string>& comments)
     : file_(file), out_(file), format_(format) {
   if (!out_) throw InputError::format("{}: cannot be written", file.string());
-  if (format == TrajectoryFormat::Kitti) return;
-  for (const std::string& comment : comments) out_ << "# " << comment << '\n';
-  out_ << written_form(format).heading;
+  if (format != TrajectoryFormat::Kitti) out_ << heading_of(format, comments);
 }
 
 void TrajectoryWriter::add(const StampedPose& pose) {
@@ -162,9 +167,10 @@ void TrajectoryWriter::flush() {
 
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::vector<std::string>& comments) {
-  TrajectoryWriter writer(file, TrajectoryFormat::Tum, comments);
-  for (const StampedPose& pose : trajectory) writer.add(pose);
-  writer.flush();
+  const WrittenForm& form = written_form(TrajectoryFormat::Tum);
+  std::string text = heading_of(TrajectoryFormat::Tum, comments);
+  for (const StampedPose& pose : trajectory) text += pose_row(form.table, pose, form.separator) + '\n';
+  write_file(file, text);
 }
 
 }  // namespace edged
