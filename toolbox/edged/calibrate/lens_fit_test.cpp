@@ -57,9 +57,11 @@ TEST(LensFit, TakesTheModelThatExplainsTheViews) {
 }
 
 // The focal length scatters between sets of views by what its sigma says, although radtan is the wrong model: by the
-// noise of the corners alone the sigma would be many times too small.
+// noise of the corners alone the variance would be a third of that, or less.
 TEST(RigFit, SigmasContainWhatTheModelOfTheLensMisses) {
-  const TargetLayout layout = layout_of(usual_target(TargetKind::AprilGrid));
+  TargetSpec few = usual_target(TargetKind::AprilGrid);
+  few.rows = few.columns = 4;
+  const TargetLayout layout = layout_of(few);
   std::vector<double> focal;
   double variance = 0.0, by_noise = 0.0;
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
@@ -75,7 +77,7 @@ TEST(RigFit, SigmasContainWhatTheModelOfTheLensMisses) {
   for (const double f : focal) scatter += (f - mean) * (f - mean) / 5.0;
   EXPECT_LT(scatter, 4.0 * variance);
   EXPECT_GT(scatter, 0.1 * variance);
-  EXPECT_GT(scatter, 4.0 * by_noise);
+  EXPECT_GT(variance, 3.0 * by_noise);
 }
 
 TEST(LensFit, SaysWhatToRecord) {
