@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a recording in one file (Prophesee RAW and DAT, AEDAT 2.0, 3.1 and 4, zip, text): opened by content and
-// read through.
+// Any bytes as a recording in one file (Prophesee RAW and DAT, Event Stream, AEDAT 2.0, 3.1 and 4, zip, text): opened
+// by content and read through.
 #include "edged/io/open_recording.hpp"
 #include "fuzz_support.hpp"
 

@@ -18,6 +18,7 @@
 #include "edged/io/archive/zip_archive.hpp"
 #include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/dataset_folders.hpp"
+#include "edged/io/event_stream/event_stream.hpp"
 #include "edged/io/hdf5/hdf5.hpp"
 #include "edged/io/parse/imu_table.hpp"
 #include "edged/io/prophesee/raw.hpp"
@@ -48,6 +49,7 @@ constexpr std::array kFileFormats = {
     FileFormat{.name = "zip", .recognizes = is_zip, .open = open_archive},
     FileFormat{.name = "HDF5", .recognizes = is_hdf5, .open = open_hdf5},
     FileFormat{.name = "AEDAT4", .recognizes = is_aedat4, .open = open_aedat4, .alone = true},
+    FileFormat{.name = "Event Stream", .recognizes = is_event_stream, .open = open_event_stream, .alone = true},
     FileFormat{.name = "AEDAT 2.0 or 3.1", .recognizes = is_old_aedat, .open = open_old_aedat, .alone = true},
 };
 
@@ -121,7 +123,7 @@ std::optional<SourcePath> find_imu_beside(const SourcePath& folder, const std::s
 void warn_unread(const SourcePath& folder, const std::set<std::string>& read) {
   static const std::set<std::string> kData = {".csv",   ".txt", ".bag",  ".raw", ".dat", ".aedat4",
                                               ".aedat", ".h5",  ".db3",  ".zip", ".npz", ".mcap",
-                                              ".npy",   ".mat", ".hdf5", ".mp4", ".avi"};
+                                              ".npy",   ".mat", ".hdf5", ".mp4", ".avi", ".es"};
   static const std::set<std::string> kCalibrations = {".yaml", ".yml", ".json", ".xml"};
   static const std::set<std::string> kPictures = {".png", ".jpg", ".jpeg", ".bmp", ".pgm"};
   std::vector<std::string> names;

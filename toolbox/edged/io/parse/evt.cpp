@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/bytes.hpp"
@@ -36,8 +37,12 @@ std::int64_t continued(std::int64_t last, std::uint32_t counter, unsigned width)
 /// it.
 class EvtDecoder::Sink {
  public:
-  Sink(std::uint32_t width, std::uint32_t height, Counts& counts, std::vector<Event>& events)
-      : width_(width), height_(height), counts_(counts), events_(events) {}
+  Sink(EvtDecoder& decoder, std::vector<Event>& events)
+      : width_(decoder.width_),
+        height_(decoder.height_),
+        counts_(decoder.counts_),
+        triggers_(decoder.triggers_),
+        events_(events) {}
   ~Sink() { flush(); }
   Sink(const Sink&) = delete;
   Sink& operator=(const Sink&) = delete;
@@ -70,10 +75,18 @@ class EvtDecoder::Sink {
     state.timed = std::abs(state.high) < kLongest_us >> unit;
   }
 
-  /// Words without events: external trigger, IMU of the camera (of undocumented unit), others, continued. Other types
-  /// are in none of the formats and are counted.
+  /// Words without events: IMU of the camera (of undocumented unit), others, continued. Other types are in none of the
+  /// formats and are counted.
   void no_change(std::uint32_t type) {
-    if (type != 0xA && type != 0xD && type != 0xE && type != 0xF) ++counts_.unknown;
+    if (type != 0xD && type != 0xE && type != 0xF) unknown();
+  }
+  void unknown() { ++counts_.unknown; }
+
+  [[gnu::noinline]] void trigger(const State& state, std::int64_t t_us, std::uint32_t channel, bool rising) {
+    if (!state.timed) return;
+    Edges& edges = triggers_[channel][rising ? 1 : 0];
+    if (edges.count++ == 0) edges.first_us = t_us;
+    edges.last_us = t_us;
   }
 
  private:
@@ -84,6 +97,7 @@ class EvtDecoder::Sink {
 
   const std::uint32_t width_, height_;
   Counts& counts_;
+  std::map<std::uint32_t, std::array<Edges, 2>>& triggers_;
   std::vector<Event>& events_;
   std::array<Event, 512> some_;
   std::size_t count_ = 0;
@@ -100,7 +114,7 @@ void EvtDecoder::reset() {
 }
 
 void EvtDecoder::decode(std::span<const std::uint8_t> bytes, std::vector<Event>& events) {
-  Sink sink(width_, height_, counts_, events);
+  Sink sink(*this, events);
   switch (format_) {
     case EvtFormat::Evt2:
       return each_word<std::uint32_t>(bytes, [&](auto word, State& state) { evt2(word, state, sink); });
@@ -112,6 +126,8 @@ void EvtDecoder::decode(std::span<const std::uint8_t> bytes, std::vector<Event>&
       return each_word<std::uint16_t>(bytes, [&](auto word, State& state) { evt3(word, state, sink); });
     case EvtFormat::Dat:
       return each_word<std::uint64_t>(bytes, [&](auto word, State& state) { dat(word, state, sink); });
+    case EvtFormat::Evt4:
+      return each_word<std::uint32_t>(bytes, [&](auto word, State& state) { evt4(word, state, sink); });
   }
 }
 
@@ -152,6 +168,9 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
     case 0x8:
       sink.time_high(state, bits(word, 0, 28), 28, 6);
       break;
+    case 0xA:
+      sink.trigger(state, state.high << 6 | bits(word, 22, 6), bits(word, 8, 5), bits(word, 0, 1));
+      break;
     default:
       sink.no_change(type);
   }
@@ -166,6 +185,9 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
       break;
     case 0x8:
       sink.time_high(state, bits(word, 32, 28), 28, 6);
+      break;
+    case 0xA:
+      sink.trigger(state, state.high << 6 | bits(word, 54, 6), bits(word, 40, 5), bits(word, 32, 1));
       break;
     default:
       sink.no_change(type);
@@ -205,8 +227,39 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
     }
     case 0x7:  // continued
       break;
+    case 0xA:
+      sink.trigger(state, state.high << 12 | state.low, bits(word, 8, 4), bits(word, 0, 1));
+      break;
     default:
       sink.no_change(type);
+  }
+}
+
+/// The layout is that of the public headers of the manufacturer; no page describes it.
+[[gnu::always_inline]] inline void EvtDecoder::evt4(std::uint32_t word, State& state, Sink& sink) {
+  if (const std::uint32_t head = std::exchange(state.vector, 0))
+    return sink.add_row(state, state.high << 6 | bits(head, 22, 6), bits(head, 11, 11), bits(head, 0, 11),
+                        bits(head, 28, 1), word);
+  switch (bits(word, 28, 4)) {
+    case 0xA:  // darker
+    case 0xB:  // brighter
+      sink.add(state, state.high << 6 | bits(word, 22, 6), bits(word, 11, 11), bits(word, 0, 11), bits(word, 28, 1));
+      break;
+    case 0xC:
+    case 0xD:
+      state.vector = word;
+      break;
+    case 0xE:
+      sink.time_high(state, bits(word, 0, 28), 28, 6);
+      break;
+    case 0x9:
+      sink.trigger(state, state.high << 6 | bits(word, 22, 6), bits(word, 8, 5), bits(word, 0, 1));
+      break;
+    case 0x6:  // others
+    case 0x7:  // continued
+      break;
+    default:
+      if (word != ~std::uint32_t{0}) sink.unknown();  // all bits set: padding
   }
 }
 
@@ -236,6 +289,8 @@ std::size_t EvtEncoder::write_row(std::span<const Event> events) {
     write_evt3(a, t_us, mask);
   } else if (format_ == EvtFormat::Evt21 || format_ == EvtFormat::Evt21Legacy) {
     write_evt21(a, t_us, mask);
+  } else if (format_ == EvtFormat::Evt4) {
+    write_evt4(a, t_us, mask);
   } else {
     for (const Event& event : events.first(count)) write_single(event, t_us);
   }
@@ -259,6 +314,14 @@ void EvtEncoder::write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t m
   high_ = t_us >> 6;
   put21(std::uint64_t{e.positive} << 60 | (t_us & 63) << 54 | std::uint64_t{e.x} << 43 | std::uint64_t{e.y} << 32 |
         mask);
+}
+
+void EvtEncoder::write_evt4(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
+  if (t_us >> 6 != high_) append_number(bytes_, static_cast<std::uint32_t>(0xEU << 28 | (t_us >> 6 & 0xFFFFFFF)));
+  high_ = t_us >> 6;
+  const std::uint32_t type = (mask == 1 ? 0xAU : 0xCU) + (e.positive ? 1U : 0U);
+  append_number(bytes_, static_cast<std::uint32_t>(type << 28 | (t_us & 63) << 22 | unsigned{e.x} << 11 | e.y));
+  if (mask != 1) append_number(bytes_, mask);
 }
 
 void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask) {

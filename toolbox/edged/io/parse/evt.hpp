@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Decodes and encodes the formats of Prophesee sensors: EVT 2.0, 2.1 and 3.0, and the records of DAT files.
+// Decodes and encodes the formats of Prophesee sensors: EVT 2.0, 2.1, 3.0 and 4.0, and the records of DAT files.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ enum class EvtFormat {
   Evt21Legacy,  ///< EVT 2.1 with the upper half of a word sent first (IMX636)
   Evt3,         ///< words of 16 bits that change a state; up to 12 events each
   Dat,          ///< records of 64 bits with their full time
+  Evt4,         ///< words of 32 bits, one event each, or two words for up to 32 events of one row
 };
 
 /// Decodes a stream of bytes into events. Chunks may end anywhere, also within a word. Stamps come from the
@@ -48,6 +50,14 @@ class EvtDecoder {
 
   const Counts& counts() const { return counts_; }
 
+  /// Edges of one polarity of an external trigger input.
+  struct Edges {
+    std::size_t count = 0;
+    std::int64_t first_us = 0, last_us = 0;
+  };
+  /// Channel of the trigger input to its falling and its rising edges.
+  const std::map<std::uint32_t, std::array<Edges, 2>>& triggers() const { return triggers_; }
+
  private:
   /// The state between two words.
   struct State {
@@ -57,6 +67,7 @@ class EvtDecoder {
     std::uint32_t row = kNowhere;     ///< EVT 3 only
     std::uint32_t base_x = kNowhere;  ///< column of the next vector, EVT 3 only
     bool positive = false;            ///< polarity of the next vector, EVT 3 only
+    std::uint32_t vector = 0;         ///< word whose columns the next word holds, EVT 4 only
   };
   class Sink;
   static constexpr std::uint32_t kNowhere = 0x10000;  ///< outside every sensor
@@ -66,19 +77,21 @@ class EvtDecoder {
   static void evt2(std::uint32_t word, State& state, Sink& sink);
   static void evt21(std::uint64_t word, State& state, Sink& sink);
   static void evt3(std::uint16_t word, State& state, Sink& sink);
+  static void evt4(std::uint32_t word, State& state, Sink& sink);
   static void dat(std::uint64_t word, State& state, Sink& sink);
 
   EvtFormat format_;
   std::uint32_t width_, height_;
   State state_;
   Counts counts_;
+  std::map<std::uint32_t, std::array<Edges, 2>> triggers_;
   std::array<std::uint8_t, 8> cut_{};  ///< the first bytes of a word that ends in the next chunk
   std::size_t cut_bytes_ = 0;
 };
 
 /// Encodes events in time order for EvtDecoder. Stamps are rounded down to microseconds. Bits of the first stamp beyond
-/// the counter (EVT 3: 24 bits, EVT 2: 34, DAT: 32) are lost, and later stamps continue from there. Columns and rows
-/// have 11 bits (DAT: 14).
+/// the counter (EVT 3: 24 bits, EVT 2 and 4: 34, DAT: 32) are lost, and later stamps continue from there. Columns and
+/// rows have 11 bits (DAT: 14).
 class EvtEncoder {
  public:
   explicit EvtEncoder(EvtFormat format) : format_(format) {}
@@ -89,6 +102,7 @@ class EvtEncoder {
  private:
   std::size_t write_row(std::span<const Event> events);
   void write_single(const Event& e, std::uint64_t t_us);
+  void write_evt4(const Event& e, std::uint64_t t_us, std::uint32_t mask);
   void write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t mask);
   void write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask);
   void put3(unsigned type, std::uint64_t payload);

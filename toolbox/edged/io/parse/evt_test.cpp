@@ -92,7 +92,7 @@ TEST_P(EvtRoundTrip, AfterAResetTheStreamBeginsAnew) {
 
 INSTANTIATE_TEST_SUITE_P(, EvtRoundTrip,
                          ::testing::Values(EvtFormat::Evt2, EvtFormat::Evt21, EvtFormat::Evt21Legacy, EvtFormat::Evt3,
-                                           EvtFormat::Dat));
+                                           EvtFormat::Dat, EvtFormat::Evt4));
 
 TEST(EvtDecoder, EventsBeforeTheFirstTimeAreCounted) {
   std::string bytes = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
@@ -118,6 +118,31 @@ TEST(EvtDecoder, ReadsTheWordsOfTheDocumentation) {
   ASSERT_EQ(a.size(), 8u);  // bits set in 0x05060708
   EXPECT_TRUE(a == b);
   EXPECT_EQ(a[0], (Event{timestamp_from_ns(4000), 0x40 + 3, 0x304, false}));
+}
+
+TEST(EvtDecoder, ReadsTheWordsOfEvt4) {
+  std::string bytes;
+  for (const std::uint32_t word :
+       {0xE0000001U,                              // 64 us
+        0xB0000000U | 5U << 22 | 100U << 11 | 7,  // brighter, 5 us later
+        0xFFFFFFFFU, 0x60140000U, 0x70000000U,    // padding, a counter of the sensor in two words
+        0xC0000000U | 9U << 22 | 31U << 11 | 8,   // darker, in the columns of the next word
+        0xE0000001U,                              // columns 31, 60, 61, 62, and no time
+        0x90000000U | 1U << 22 | 3U << 8 | 1,     // rising edge at input 3
+        0x30000000U}) {                           // a type that the format does not have
+    append_number(bytes, word);
+  }
+  std::vector<Event> events;
+  EvtDecoder decoder(EvtFormat::Evt4, 2048, 2048);
+  decoder.decode(as_bytes(bytes), events);
+  const auto at = [](std::int64_t t_us, std::uint16_t x, std::uint16_t y, bool positive) {
+    return Event{timestamp_from_ns(t_us * 1000), x, y, positive};
+  };
+  EXPECT_TRUE(events == (std::vector<Event>{at(69, 100, 7, true), at(73, 31, 8, false), at(73, 60, 8, false),
+                                            at(73, 61, 8, false), at(73, 62, 8, false)}));
+  EXPECT_EQ(decoder.counts().unknown, 1u);
+  ASSERT_EQ(decoder.triggers().count(3), 1u);
+  EXPECT_EQ(decoder.triggers().at(3)[1].first_us, 65);
 }
 
 TEST(EvtDecoder, UnknownWordsArePassedOverAndCounted) {

@@ -67,6 +67,7 @@ std::string_view encoding_name(const HeaderFields& fields) {
   if (evt == "2.0") return "EVT2";
   if (evt == "2.1") return "EVT21";
   if (evt == "3.0") return "EVT3";
+  if (evt == "4.0") return "EVT4";
   return fields.contains("Data") || fields.contains("Version") ? "DAT" : evt;
 }
 
@@ -130,6 +131,7 @@ class PropheseeDataset final : public StreamedDataset {
     decoded_ += events_.size();
     push_events(events_);
     count_left_out(before, decoder_.counts());
+    list_triggers();
     return !bytes.empty();
   }
 
@@ -177,6 +179,18 @@ class PropheseeDataset final : public StreamedDataset {
       throw InputError::format(
           "{}: {} words are of no known type: the file is damaged or not of the encoding that its header names", name_,
           now.unknown);
+  }
+
+  /// As streams, in which a pulse counts once, with their mean period.
+  void list_triggers() {
+    info_.streams.clear();
+    for (const auto& [channel, edges] : decoder_.triggers()) {
+      const EvtDecoder::Edges& pulses = edges[edges[1].count >= edges[0].count ? 1 : 0];
+      const double span_ms = 1e-3 * static_cast<double>(pulses.last_us - pulses.first_us);
+      const std::string period =
+          pulses.count > 1 ? fmt::format(", every {:.3f} ms", span_ms / static_cast<double>(pulses.count - 1)) : "";
+      info_.streams.push_back({fmt::format("trigger {}", channel), "pulses" + period, pulses.count, ""});
+    }
   }
 
   /// The end by the last block. Nothing if the counter may have wrapped before it (EVT 3: 17 s, DAT: 72 min).
@@ -282,6 +296,8 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
     header.format = little ? EvtFormat::Evt21 : EvtFormat::Evt21Legacy;
   } else if (name == "EVT3") {
     header.format = EvtFormat::Evt3;
+  } else if (name == "EVT4") {
+    header.format = EvtFormat::Evt4;
   } else if (name == "DAT") {
     header.format = EvtFormat::Dat;
     constexpr int kEvent2d = 0x00, kEventCd = 0x0C, kRecordBytes = 8;
@@ -294,7 +310,7 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
           file, type, size);
     header.bytes += 2;
   } else {
-    throw InputError::format("{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3 and DAT can", file, name);
+    throw InputError::format("{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3, EVT4 and DAT can", file, name);
   }
   return header;
 }

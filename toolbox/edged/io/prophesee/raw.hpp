@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Files of Prophesee cameras: RAW in EVT 2.0, 2.1 and 3.0, with old and new headers, and DAT.
+// Files of Prophesee cameras: RAW in EVT 2.0, 2.1, 3.0 and 4.0, with old and new headers, and DAT.
 #pragma once
 
 #include <string>

@@ -34,6 +34,8 @@ INSTANTIATE_TEST_SUITE_P(
         RawFile{"evt21", "% format EVT21;endianness=little;height=720;width=1280\n% end\n", EvtFormat::Evt21},
         RawFile{"evt21_of_two_keys", "% evt 2.1\n% endianness little\n% geometry 1280x720\n% end\n", EvtFormat::Evt21},
         RawFile{"evt21_halves_swapped", "% format EVT21;height=720;width=1280\n% end\n", EvtFormat::Evt21Legacy},
+        RawFile{"evt4", "% evt 4.0\n% format EVT4;height=720;width=1280\n% end\n", EvtFormat::Evt4},
+        RawFile{"evt4_of_one_key", "% evt 4.0\n% geometry 1280x720\n% end\n", EvtFormat::Evt4},
         RawFile{"dat", "% Data file containing CD events\n% Version 2\n% Width 1280\n% Height 720\n" + kDatType,
                 EvtFormat::Dat}),
     [](const auto& parameter) { return parameter.param.name; });
@@ -97,9 +99,13 @@ std::string refusal(const std::string& content) {
 TEST(PropheseeRaw, ALostByteCostsFewEvents) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(200'000, 1280, 720, 20);
-  for (const EvtFormat format : {EvtFormat::Evt3, EvtFormat::Evt2, EvtFormat::Evt21Legacy}) {
+  for (const EvtFormat format : {EvtFormat::Evt3, EvtFormat::Evt2, EvtFormat::Evt21Legacy, EvtFormat::Evt4}) {
     const std::string words = EvtEncoder(format).encode(events);
-    const std::string name = format == EvtFormat::Evt3 ? "EVT3" : format == EvtFormat::Evt2 ? "EVT2" : "EVT21";
+    const std::map<EvtFormat, std::string> names{{EvtFormat::Evt3, "EVT3"},
+                                                 {EvtFormat::Evt2, "EVT2"},
+                                                 {EvtFormat::Evt21Legacy, "EVT21"},
+                                                 {EvtFormat::Evt4, "EVT4"}};
+    const std::string& name = names.at(format);
     for (const std::size_t lost : {1U, 3U}) {
       const std::string cut = std::string(words).erase(words.size() / 3, lost).erase(words.size() / 2, 1);
       const DamagedRead read = read_damaged(folder, "% format " + name + ";height=720;width=1280\n% end\n" + cut);
@@ -108,6 +114,49 @@ TEST(PropheseeRaw, ALostByteCostsFewEvents) {
       EXPECT_TRUE(read.events.back() == events.back()) << name;
       EXPECT_EQ(read.repairs.at("file: bytes missing"), 2u) << name;
     }
+  }
+}
+
+/// Of 25 pulses at input 2, 40 ms apart, each with both edges, between two events.
+std::string words_with_triggers(EvtFormat format) {
+  const std::vector<Event> events = generated_events(2, 640, 480, 1);
+  std::string out = EvtEncoder(format).encode(events);
+  const auto time_and_trigger = [&](std::int64_t t_us, unsigned value) {
+    const auto high = static_cast<std::uint32_t>(t_us >> 6), low = static_cast<std::uint32_t>(t_us & 63);
+    const std::uint32_t trigger = low << 22 | 2U << 8 | value;
+    if (format == EvtFormat::Evt3) {
+      append_number(out, static_cast<std::uint16_t>(0x8000 | t_us >> 12));
+      append_number(out, static_cast<std::uint16_t>(0x6000 | (t_us & 0xFFF)));
+      append_number(out, static_cast<std::uint16_t>(0xA000 | 2 << 8 | value));
+    } else if (format == EvtFormat::Evt21) {
+      append_number(out, std::uint64_t{0x80000000U | high} << 32);
+      append_number(out, std::uint64_t{0xA0000000U | trigger} << 32);
+    } else {
+      append_number(out, (format == EvtFormat::Evt4 ? 0xE0000000U : 0x80000000U) | high);
+      append_number(out, (format == EvtFormat::Evt4 ? 0x90000000U : 0xA0000000U) | trigger);
+    }
+  };
+  for (int pulse = 0; pulse < 25; ++pulse) {
+    time_and_trigger(100'000 + 40'000 * pulse, 1);
+    time_and_trigger(100'500 + 40'000 * pulse, 0);
+  }
+  return out;
+}
+
+TEST(PropheseeRaw, PulsesOfTheTriggerInputAreListedWithTheirPeriod) {
+  const TempFolder folder;
+  for (const auto& [name, format] :
+       {std::pair("EVT2", EvtFormat::Evt2), std::pair("EVT3", EvtFormat::Evt3),
+        std::pair("EVT21;endianness=little", EvtFormat::Evt21), std::pair("EVT4", EvtFormat::Evt4)}) {
+    const std::string header = std::string("% format ") + name + ";height=480;width=640\n% end\n";
+    const Recording recording = open_recording(folder.write("a.raw", header + words_with_triggers(format)));
+    EXPECT_EQ(read_all(*recording.dataset).events.size(), 2u);
+    const std::vector<StreamInfo>& streams = recording.dataset->info().streams;
+    ASSERT_EQ(streams.size(), 1u) << name;
+    EXPECT_EQ(streams[0].name, "trigger 2");
+    EXPECT_EQ(streams[0].type, "pulses, every 40.000 ms");
+    EXPECT_EQ(streams[0].count, 25u);
+    EXPECT_TRUE(recording.dataset->repairs().empty());
   }
 }
 
