@@ -198,7 +198,7 @@ std::string to_text(const RecordingStatistics& s) {
   std::string text = survey_line("recording", fmt::format("{} ({})", s.info.name, s.info.format));
   for (const StreamInfo& stream : s.info.streams)
     text += survey_line("  stream", fmt::format("{} ({}){}{}", stream.name, stream.type,
-                                                stream.count > 0 ? fmt::format(", {} messages", stream.count) : "",
+                                                stream.count > 0 ? fmt::format(", {} recorded", stream.count) : "",
                                                 stream.role.empty() ? "" : " -> " + stream.role));
   text += cameras_text(s.info);
   text += survey_line("all sensors", fmt::format("{:.3f} s together", std::max(0.0, to_seconds(s.overlap()))));

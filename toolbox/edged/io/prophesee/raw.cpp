@@ -310,7 +310,10 @@ PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
           file, type, size);
     header.bytes += 2;
   } else {
-    throw InputError::format("{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3, EVT4 and DAT can", file, name);
+    throw InputError::format(
+        "{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3, EVT4 and DAT can: convert it with "
+        "metavision_file_to_hdf5",
+        file, name);
   }
   return header;
 }

@@ -13,6 +13,7 @@
 namespace edged {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 struct RawFile {
@@ -164,6 +165,7 @@ TEST(PropheseeRaw, RefusalsSayWhatIsWrongAndWhatToDo) {
   const std::string evt2 = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
   EXPECT_THAT(refusal("% evt 2.0\n% end\n" + evt2), HasSubstr("--geometry"));
   EXPECT_THAT(refusal("% format HISTO3D;height=320;width=320\n% end\n"), HasSubstr("`HISTO3D`"));
+  EXPECT_THAT(refusal("% evt 5.0\n% end\n" + evt2), AllOf(HasSubstr("`5.0`"), HasSubstr("metavision_file_to_hdf5")));
   EXPECT_THAT(refusal("% evt 2.0\n% geometry 100x100\n% end\n"), HasSubstr("holds no events"));
   EXPECT_THAT(refusal("% Version 2\n% Width 9\n% Height 9\n"), HasSubstr("ends in its header"));
   EXPECT_THAT(refusal("% Version 2\n% Width 9\n% Height 9\n\x0E\x08"), HasSubstr("type 14"));
