@@ -291,6 +291,32 @@ TEST_P(StereoBags, AreAssignedByTheTopicsOfTheCalibration) {
   EXPECT_THAT(assigned(open(kTopics, options, &mono)), ElementsAre("cam1=/right/events", "cam0=/right/image_raw"));
 }
 
+TEST_P(StereoBags, OfTwoDavisAreTwoCamerasOfEachKindByTheChainOfKalibr) {
+  const std::vector<std::string> topics = {"/davis/left/events", "/davis/right/events", "/davis/left/image_raw",
+                                           "/davis/right/image_raw"};
+  const auto assigned_by = [&](const std::vector<std::string>& calibrated) {
+    std::string chain;
+    for (std::size_t i = 0; i < calibrated.size(); ++i)
+      chain += fmt::format(
+          "cam{}:\n  camera_model: pinhole\n  intrinsics: [200, 200, 120, 90]\n  distortion_model: none\n"
+          "  resolution: [240, 180]\n  rostopic: {}\n"
+          "  T_cam_imu: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n",
+          i, calibrated[i]);
+    const Calibration c = load_calibration(folder_.write("camchain-imucam.yaml", chain));
+    RecordingOptions options = kAll;
+    options.camera_topics = c.topics;
+    return assigned(open(topics, options, &c.rig));
+  };
+  for (const char* calibrated_with : {"image_raw", "events"})
+    EXPECT_THAT(
+        assigned_by({fmt::format("/davis/right/{}", calibrated_with), fmt::format("/davis/left/{}", calibrated_with)}),
+        ElementsAre("events=/davis/right/events", "cam1_events=/davis/left/events", "frames=/davis/right/image_raw",
+                    "cam1_frames=/davis/left/image_raw"));
+  EXPECT_THAT(assigned_by({topics[1], topics[3], topics[0], topics[2]}),
+              ElementsAre("cam0=/davis/right/events", "cam2=/davis/left/events", "cam1=/davis/right/image_raw",
+                          "cam3=/davis/left/image_raw"));
+}
+
 TEST_P(StereoBags, ElseByTheNamesOfTheRigOrInOrder) {
   const Rig swapped = rig_of({"right_dvs", "left_dvs"}, {"cam0", "cam1"});
   EXPECT_THAT(assigned(open(kTopics, kAll, &swapped)), ElementsAre("right_dvs=/right/events", "left_dvs=/left/events",

@@ -31,10 +31,29 @@ bool has_any(const std::string& text, std::initializer_list<std::string_view> wo
   return std::any_of(words.begin(), words.end(), [&text](auto w) { return text.find(w) != std::string::npos; });
 }
 
-Sees decide(const Lens& lens, const CalibrationOptions& options, const SourcePath& path) {
+std::string_view name_space(const Lens& lens) {
+  return std::string_view(lens.topic).substr(0, lens.topic.rfind('/') + 1);
+}
+
+/// What the topic without its name space says.
+std::optional<Sees> topic_sees(const Lens& lens) {
+  return guess_sees(lens.topic.substr(name_space(lens).size()), lens.model.width(), lens.model.height());
+}
+
+/// Events and frames of a DAVIS were calibrated each by itself: the topic of another lens is beside that of this one,
+/// and of the other kind.
+bool has_partner(const Lens& lens, const std::vector<Lens>& all) {
+  const auto sees = topic_sees(lens);
+  return sees && !name_space(lens).empty() && std::ranges::any_of(all, [&](const Lens& other) {
+           return name_space(other) == name_space(lens) && topic_sees(other).value_or(*sees) != *sees;
+         });
+}
+
+Sees decide(const Lens& lens, const std::vector<Lens>& all, const CalibrationOptions& options, const SourcePath& path) {
   if (const auto said = options.sees.find(lens.name); said != options.sees.end()) return said->second;
   if (lens.sees) return *lens.sees;
-  const auto guess = guess_sees(lens.words, lens.model.width(), lens.model.height());
+  auto guess = guess_sees(lens.words, lens.model.width(), lens.model.height());
+  if (guess == Sees::Both && has_partner(lens, all)) guess = topic_sees(lens);
   if (!guess && !options.otherwise)
     throw InputError::format(
         "{0}: camera {1}: its names do not show whether it is an event or a frame camera: say it with `edged calib {0} "
@@ -167,7 +186,7 @@ Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions
   out.has_imu_noise = file.imu.has_value();
   out.imu = file.imu.value_or(ImuNoise{});
   out.warnings = file.warnings;
-  for (const Lens& lens : file.lenses) add_cameras(out, lens, decide(lens, options, path));
+  for (const Lens& lens : file.lenses) add_cameras(out, lens, decide(lens, file.lenses, options, path));
   if (out.rig.cameras.empty()) throw InputError::format("{}: holds no camera", path.string());
   for (auto camera = out.rig.cameras.begin(); camera != out.rig.cameras.end(); ++camera)
     if (std::any_of(out.rig.cameras.begin(), camera, [&](const RigCamera& c) { return c.name == camera->name; }))
