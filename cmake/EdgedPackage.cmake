@@ -62,7 +62,8 @@ add_custom_command(
   COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > changelog.gz
   DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   VERBATIM)
-add_custom_target(edged_changelog ALL DEPENDS changelog.gz)
+add_custom_target(edged_changelog DEPENDS changelog.gz)
+add_dependencies(edged edged_changelog)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz

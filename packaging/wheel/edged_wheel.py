@@ -43,7 +43,7 @@ def _build(build_dir):
     merged = [] if (build / "CMakeCache.txt").exists() else ["-DCMAKE_UNITY_BUILD=ON"]
     _run("cmake", "-S", ROOT, "-B", build, *generator, *merged, "-DCMAKE_BUILD_TYPE=Release", "-DEDGED_TESTS=OFF", "-DEDGED_BENCH=OFF",
          f"-DPython3_EXECUTABLE={sys.executable}")
-    _run("cmake", "--build", build, "--target", "edged_python", "edged_manual", "edged_changelog", "--parallel", os.cpu_count() or 1)
+    _run("cmake", "--build", build, "--target", "edged_python", "edged", "--parallel", os.cpu_count() or 1)
     return build
 
 

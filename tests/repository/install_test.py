@@ -54,6 +54,15 @@ class Installed(unittest.TestCase):
                     env={**self.environment, "PYTHONPATH": str(module.parent.parent)}, cwd=self.folder)
         self.assertEqual(told, "True\n")
 
+    def test_where_the_module_of_python_was_not_built_the_rest_is_installed(self):
+        script = pathlib.Path(os.environ["EDGED_BUILD"]) / "python" / "cmake_install.cmake"
+        if not script.exists():
+            self.skipTest("EDGED_PYTHON is off")
+        without, prefix = self.folder / "without.cmake", self.folder / "without"
+        without.write_text(re.sub(r"/_edged\.[^\"]*", "/not_built.so", script.read_text()))
+        call(os.environ["CMAKE"], f"-DCMAKE_INSTALL_PREFIX={prefix}", "-P", without)
+        self.assertFalse(prefix.exists())
+
     def test_nothing_points_back_to_the_sources(self):
         for file in sorted(path for path in self.prefix.rglob("*") if path.is_file()):
             for place in (SOURCE, pathlib.Path(os.environ["EDGED_BUILD"]).resolve()):
