@@ -3,8 +3,10 @@
 #include "report/report_data.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
@@ -30,6 +32,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRows = 3000, kMostRowsInAll = 6000, kMostPicturesInAll = 60, kMostMapKeyframes = 2000;
 constexpr std::size_t kMostDensePoints = 1'000'000, kMostVoxels = 250'000;  // in all
+constexpr std::uintmax_t kMostTrajectoryBytes = 2'000'000;                  // in all
 constexpr std::size_t kLogLines = 300;
 
 /// The files of a run, all but its poses as they are.
@@ -280,9 +283,26 @@ Json cloud_json(const LoadedRun& run, const char* file, std::size_t most) {
   return json;
 }
 
+/// The trajectories of the run as its files are, to be saved from the page; null for one that is too large.
+Json trajectories_json(const LoadedRun& run, std::uintmax_t most) {
+  Json texts = Json::object();
+  for (const char* name : {"trajectory.tum", "trajectory_final.tum"}) {
+    const fs::path file = run.path / name;
+    if (!run.given || !fs::exists(file)) continue;
+    const std::uintmax_t size = fs::file_size(file);
+    texts[name] = nullptr;
+    if (size > most) continue;
+    most -= size;
+    std::ifstream in(file, std::ios::binary);
+    texts[name] = std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  return texts;
+}
+
 /// How much of one run is shown.
 struct Shares {
   std::size_t rows, pictures, dense_points, voxels;
+  std::uintmax_t trajectory_bytes;
 };
 
 Json run_json(const LoadedRun& run, Timestamp origin, const Shares& most) {
@@ -303,6 +323,7 @@ Json run_json(const LoadedRun& run, Timestamp origin, const Shares& most) {
   json["external"] = run.given ? external_json(run.path, origin, most.rows) : Json::object();
   json["truth"] = path_json(run.poses.true_path, most.rows);
   json["final"] = path_json(final_path(run), most.rows);
+  json["trajectories"] = trajectories_json(run, most.trajectory_bytes);
   json["map_keyframes"] = map_keyframes_json(run, origin);
   json["map"] = map_json(run.album, run.poses.alignment);
   json["dense"] = cloud_json(run, "dense.ply", most.dense_points);
@@ -331,7 +352,7 @@ Json report_data(const std::vector<fs::path>& paths, const ReportOptions& option
   Json json = {{"version", kVersion}, {"runs", Json::array()}};
   const std::size_t n = std::max<std::size_t>(1, runs.size());
   const Shares most{std::min(kMostRows, kMostRowsInAll / n), kMostPicturesInAll / n, kMostDensePoints / n,
-                    kMostVoxels / n};
+                    kMostVoxels / n, kMostTrajectoryBytes / n};
   for (const LoadedRun& run : runs) json["runs"].push_back(run_json(run, origin_of(run, runs.front()), most));
   return json;
 } catch (const Json::exception& e) {

@@ -237,7 +237,19 @@ TEST_F(Report, StaysSmallHoweverLongTheRun) {
   EXPECT_LE(run["map"].size(), 3 * Snapshots::kMostPoints);
   const auto& status = run["rows"]["status"];
   EXPECT_EQ(std::count(status.begin(), status.end(), "Lost"), 1);  // of one row in four
-  EXPECT_LT(report_page(report_data({folder, folder})).size(), 5u << 20);
+  const nlohmann::json twice = report_data({folder, folder});
+  EXPECT_LT(report_page(twice).size(), 5u << 20);
+  EXPECT_TRUE(twice["runs"][1]["trajectories"]["trajectory.tum"].is_null());
+  EXPECT_FALSE(run["trajectories"]["trajectory.tum"].is_null());
+}
+
+TEST_F(Report, HoldsTheTrajectoriesAsTheFilesAre) {
+  const fs::path folder = make_run("circle", false);
+  write_file(folder / "trajectory_final.tum", "1 2 3 4 0 0 0 1\n");
+  const nlohmann::json held = report_data({folder})["runs"][0]["trajectories"];
+  EXPECT_EQ(held["trajectory.tum"].get<std::string>(), read_text(folder / "trajectory.tum"));
+  EXPECT_EQ(held["trajectory_final.tum"], "1 2 3 4 0 0 0 1\n");
+  EXPECT_TRUE(report_data({folder, folder / "trajectory.tum"})["runs"][1]["trajectories"].empty()) << "of a file";
 }
 
 TEST(ReportRows, AreBoundedThoughTheStatusFlutters) {

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
 """edged calib --target: a calibration from a recording of a target, what it writes, and what it refuses.
-Usage: EDGED=path/to/edged calib_target_test.py"""
+Usage: EDGED=path/to/edged calib_target_test.py [--pictures FOLDER]; the option leaves screenshots of the page."""
 import json
 import math
 import signal
@@ -15,8 +15,10 @@ import unittest
 
 import yaml
 
+from browser import CHROMIUM, Browser, pictures_folder
 from program import EDGED, WithFlight, WithFolder, edged
 
+PICTURES = None
 GRID = ("--target", "aprilgrid", "--rows", 3, "--columns", 4, "--size", 80)
 
 
@@ -62,6 +64,27 @@ class FromARecording(WithFlight):
         data = json.loads(page.split('<script type="application/json" id="data">')[1].split("</script>")[0])
         self.assertGreater(len(data["cameras"][1]["residuals"]), 1000)
         self.assertEqual(len(data["cameras"][1]["cells"]["corners"]), 48)
+        if CHROMIUM:
+            self.assert_legible(self.folder / "head.html")
+
+    def assert_legible(self, page):
+        """Narrow and wide, light and dark: nothing sticks out, no name is broken within, images are as wide as their plots."""
+        browser = Browser(self.folder / "profile")
+        self.addCleanup(browser.close)
+        for width, dark in ((390, False), (390, True), (1400, False), (1400, True)):
+            theme = "dark" if dark else "light"
+            browser.show(width, 900, dark)
+            browser.open(page.as_uri())
+            browser.wait_for(f"innerWidth === {width} && document.documentElement.dataset.theme === '{theme}'")
+            self.assertEqual(browser.value("[...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > innerWidth + 0.5)"
+                                           ".map(e => e.tagName + '.' + e.className)"), [])
+            self.assertLess(browser.value("Math.max(...[...document.querySelectorAll('td.key')].filter(e => !e.textContent.includes(' '))"
+                                          ".map(e => e.clientHeight))"), 35)  # one line
+            self.assertEqual(browser.value("[...document.querySelectorAll('canvas')].map(e => (100 * e.clientHeight / e.clientWidth).toFixed(0))"),
+                             6 * ["75"])
+            if PICTURES:
+                browser.picture(PICTURES / f"target-{width}-{theme}.png")
+        self.assertEqual(browser.complaints, [])
 
     def test_other_formats_hold_the_same(self):
         options = (self.flight, *GRID, "--mode", "frames", "--to", 8, "--quiet")
@@ -134,4 +157,5 @@ class ATarget(WithFolder):
 
 
 if __name__ == "__main__":
+    PICTURES = pictures_folder()
     unittest.main()

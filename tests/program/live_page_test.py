@@ -21,6 +21,8 @@ from program import EDGED, WithFlight, edged
 
 PICTURES = None
 FACTS = "Object.fromEntries([...document.querySelectorAll('.facts div')].map(e => [e.children[0].textContent, e.children[1].textContent]))"
+# The empty share of the height of the camera card.
+EMPTY = "(card => (card.getBoundingClientRect().bottom - card.lastChild.getBoundingClientRect().bottom) / card.clientHeight)(document.querySelector('.shots').parentNode)"
 TOO_WIDE = "[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll, pre') && e.getBoundingClientRect().right > innerWidth + 0.5).length"
 
 
@@ -247,6 +249,7 @@ class LivePage(WithFlight):
         browser.show(width, 900, dark)
         browser.wait_for(f"innerWidth === {width} && document.documentElement.dataset.theme === '{'dark' if dark else 'light'}'")
         self.assertEqual(browser.value(TOO_WIDE), 0)
+        self.assertLess(browser.value(EMPTY), 0.2)
         if PICTURES:
             over = browser.value("document.getElementById('live') === null")
             browser.picture(PICTURES / f"{'over' if over else 'live'}-{width}-{'dark' if dark else 'light'}.png")

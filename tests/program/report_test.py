@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 import subprocess
+import time
 import unittest
 
 from browser import CHROMIUM, Browser, pictures_folder
@@ -38,6 +39,24 @@ async function probe() {
   found.plots = plots.length;
   await wait();
   found.blank = plots.filter(blank).length;
+  // In colours of their own, where they are seen beside each other.
+  root.style.setProperty('--truth', '#ff00ff'); root.style.setProperty('--run0', '#00ff00');
+  for (let k = 0; k < 3; ++k) page.getElementById('theme').click();
+  const inked = (canvas, is, width = canvas.width) => {
+    const copy = Object.assign(page.createElement('canvas'), {width, height: canvas.height}).getContext('2d', {willReadFrequently: true});
+    copy.drawImage(canvas, 0, 0);
+    const p = copy.getImageData(0, 0, width, canvas.height).data;
+    let n = 0;
+    for (let i = 0; i < p.length; i += 4) n += p[i + 3] > 60 && is(p[i], p[i + 1], p[i + 2]);
+    return n;
+  };
+  found.cut = plots.filter(canvas => inked(canvas, () => true, 1)).map(canvas => canvas.ariaLabel);  // an axis whose labels reach the left edge
+  found.truth_px = plots.slice(0, 6).map(canvas => inked(canvas, (r, g, b) => Math.min(r, b) > g + 60));
+  found.estimate_px = plots.slice(0, 6).map(canvas => inked(canvas, (r, g, b) => g > Math.max(r, b) + 60));
+  root.removeAttribute('style');
+  for (let k = 0; k < 3; ++k) page.getElementById('theme').click();
+  const pictures = [...page.querySelectorAll('.pair > .card')].find(card => card.querySelector('.shots'));
+  found.empty = pictures ? (pictures.getBoundingClientRect().bottom - pictures.lastChild.getBoundingClientRect().bottom) / pictures.clientHeight : 0;
   found.spans = [span()];
   plots[0].focus();
   key(plots[0], 'ArrowRight'); await wait(); found.spans.push(span());
@@ -133,6 +152,8 @@ class Page(WithFlight):
         self.assertEqual(found["too_wide"], [])
         self.assertGreaterEqual(found["plots"], 20)
         self.assertEqual(found["blank"], 0)
+        self.assertLess(found["empty"], 0.2)  # of the camera card
+        self.assertEqual(found["cut"], [])
         whole, with_cursor, zoomed, back = found["spans"]
         self.assertTrue("cursor" in with_cursor and with_cursor.startswith(whole))
         self.assertNotEqual(zoomed.split(",")[0], whole)
@@ -155,6 +176,29 @@ class Page(WithFlight):
             self.assertEqual(facts["duration"], f"{self.metrics['duration_s']:.1f} s")
             self.assertEqual(facts["losses"], "none")
             self.assertEqual(facts["poses, keyframes"], f"{self.metrics['poses']}, {self.metrics['keyframes']}")
+
+    def test_ground_truth_is_seen_beside_the_estimate_that_it_agrees_with(self):
+        found = self.probe(self.run_folder / "report.html", 1400)
+        for truth, estimate in zip(found["truth_px"], found["estimate_px"]):
+            self.assertGreater(estimate, 200)
+            self.assertGreater(truth, estimate)
+
+    def test_its_links_save_the_trajectories(self):
+        if not CHROMIUM:
+            self.skipTest("no chromium here: apt-get install chromium")
+        saved = self.folder / "saved"
+        browser = Browser(self.folder / "profile")
+        self.addCleanup(browser.close)
+        browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(saved))
+        browser.open((self.run_folder / "report.html").as_uri())
+        browser.wait_for("document.documentElement.dataset.ready === 'yes'")
+        for name in ("trajectory.tum", "trajectory_final.tum"):
+            browser.value(f"[...document.querySelectorAll('.downloads a')].find(e => e.textContent === '{name}').click()")
+            file, until = saved / f"room-fused-{name}", time.monotonic() + 30
+            while not file.exists() and time.monotonic() < until:
+                time.sleep(0.1)
+            self.assertEqual(file.read_bytes(), (self.run_folder / name).read_bytes())
+        self.assertEqual(browser.complaints, [])
 
     def test_dense_points_and_voxels_are_shown_as_the_boxes_say(self):
         if not CHROMIUM:

@@ -63,7 +63,7 @@ class TimeGroup {
   }
 }
 
-/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, dash, dots, band: {low, high}}]. */
+/** spec: title, unit, zero (the axis holds 0), series: [{t, y, label, colour, wide, dots, band: {low, high}}]; wide: pale, seen on both sides of a line above it. */
 class TimePlot {
   constructor(group, spec, parent) {
     this.group = group;
@@ -83,7 +83,6 @@ class TimePlot {
     this.line.className = 'cursor';
     this.choice = area.appendChild(document.createElement('div'));
     this.choice.className = 'choice';
-    this.left = 46;
     this.listen();
     group.plots.push(this);
   }
@@ -161,6 +160,10 @@ class TimePlot {
     const [context, width, height] = sized(this.canvas);
     const bottom = height - 20, [low, high] = this.range(), [a, b] = this.group.view;
     const yOf = y => bottom - (bottom - 6) * (y - low) / (high - low);
+    const stepY = niceStep(high - low, 5), stepT = niceStep(b - a, Math.max(2, width / 90)), ticks = [];
+    for (let y = Math.ceil(low / stepY) * stepY; y <= high; y += stepY) ticks.push(y);
+    context.font = '11px system-ui, "DejaVu Sans", sans-serif';
+    this.left = Math.max(46, ...ticks.map(y => context.measureText(tickText(y, stepY)).width + 8));
     for (const span of this.group.spans) {
       const from = Math.max(this.left, this.xOf(span.from)), to = Math.min(width - 6, this.xOf(span.to));
       context.fillStyle = colour(span.colour);
@@ -170,14 +173,12 @@ class TimePlot {
     }
     context.fillStyle = colour('accent');
     for (const t of this.group.marks) if (t >= a && t <= b) context.fillRect(this.xOf(t) - 1, 4, 2, bottom - 4);
-    context.font = '11px system-ui, "DejaVu Sans", sans-serif';
     context.fillStyle = colour('soft');
     context.strokeStyle = colour('grid');
     context.textAlign = 'right';
     context.textBaseline = 'middle';
-    const stepY = niceStep(high - low, 5), stepT = niceStep(b - a, Math.max(2, width / 90));
     context.beginPath();
-    for (let y = Math.ceil(low / stepY) * stepY; y <= high; y += stepY) {
+    for (const y of ticks) {
       context.moveTo(this.left, yOf(y)), context.lineTo(width - 6, yOf(y));
       context.fillText(tickText(y, stepY), this.left - 5, yOf(y));
     }
@@ -215,8 +216,8 @@ class TimePlot {
       return;
     }
     context.strokeStyle = ink;
-    context.lineWidth = series.dash ? 1.4 : 1.6;
-    context.setLineDash(series.dash ? [5, 4] : []);
+    context.lineWidth = series.wide ? 6 : 1.6;
+    context.globalAlpha = series.wide ? 0.5 : 1;
     context.beginPath();
     let pen = false;
     for (let i = first; i <= last; ++i) {
@@ -226,7 +227,7 @@ class TimePlot {
       pen = true;
     }
     context.stroke();
-    context.setLineDash([]);
+    context.globalAlpha = 1;
   }
 
   showCursor() {

@@ -90,6 +90,18 @@ function facts(run) {
   return list;
 }
 
+/** Links that save the trajectories, which the page contains; null for a file and for a run without poses. */
+function downloads(run) {
+  const names = Object.keys(run.trajectories || {});
+  if (!names.length) return null;
+  return make('p', {class: 'downloads'}, 'Save: ', ...names.flatMap((name, k) => {
+    const text = run.trajectories[name], file = new Blob([text || ''], {type: 'text/plain'});
+    const link = text === null ? name + ' is too large for this page; it is in the run folder'
+      : make('a', {href: URL.createObjectURL(file), download: run.name + '-' + name}, name);
+    return k ? [', ', link] : [link];
+  }));
+}
+
 function verdictCard(run, i) {
   const m = run.metrics;
   const [says, ink] = run.is_file ? [run.by_edged ? 'A trajectory of edged; its run folder shows more.' : 'A trajectory of another program.', 'initializing']
@@ -108,6 +120,8 @@ function verdictCard(run, i) {
     for (const [what, count] of Object.entries(m.repairs || {})) card.append(make('p', {}, 'repaired: ' + count + ' × ' + what));
   }
   card.append(make('dl', {class: 'facts'}, ...facts(run).flatMap(([name, value]) => value === null ? [] : [make('div', {}, make('dt', {}, name), make('dd', {}, value))])));
+  const links = downloads(run);
+  if (links) card.append(links);
   return card;
 }
 
@@ -271,7 +285,7 @@ function picturesCard() {
       card.append(make('figure', {class: 'shot'}, image, caption));
     }
   }
-  const figures = make('div', {class: shown.length > 2 ? 'shots many' : 'shots'}, ...card.querySelectorAll('figure'));
+  const figures = make('div', {class: 'shots'}, ...card.querySelectorAll('figure'));
   card.append(figures, make('p', {class: 'hint'}, 'Orange: new corners, green: those followed for more than five images.'));
   const update = () => {
     const t = time.cursor === null ? time.full[0] + 0.5 * (time.full[1] - time.full[0]) : time.cursor;

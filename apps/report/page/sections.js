@@ -20,7 +20,7 @@ function columnPlot(parent, title, unit, key, more) {
   runs.forEach((run, i) => {
     const rows = run.rows;
     if (more && more.truth && !truth && rows['true_' + key]) {
-      truth = {t: rows.t, y: rows['true_' + key], label: 'truth', colour: 'truth', dash: true};
+      truth = {t: rows.t, y: rows['true_' + key], label: 'truth (wide)', colour: 'truth', wide: true};
     }
     if (!rows[key] || !(run.live || rows[key].some(value => value !== null))) return;
     if (about(run) && about(run).mode === (more && more.notIn)) return;

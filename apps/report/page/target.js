@@ -5,8 +5,8 @@
 
 const kArrow = 40;  // pixels of the image that a residual of one pixel is drawn long
 
-function targetCanvas(title, note, draw, height) {
-  const canvas = make('canvas', {role: 'img', 'aria-label': title, style: 'height: ' + height + 'px'});
+function targetCanvas(title, note, draw, [width, height]) {
+  const canvas = make('canvas', {role: 'img', 'aria-label': title, style: 'height: auto; aspect-ratio: ' + width + ' / ' + height});
   const figure = make('figure', {class: 'plot'}, make('figcaption', {}, title, make('span', {}, note)),
                       make('div', {class: 'area'}, canvas));
   const redraw = () => draw(...sized(canvas));
@@ -24,7 +24,7 @@ function drawCells(camera, context, width, height) {
   context.textAlign = 'center';
   for (let i = 0; i < corners.length; ++i) {
     const x = (i % columns) * w, y = Math.floor(i / columns) * h;
-    context.globalAlpha = corners[i] ? 0.15 + 0.75 * Math.sqrt(corners[i] / most) : 1;
+    context.globalAlpha = corners[i] ? 0.1 + 0.4 * Math.sqrt(corners[i] / most) : 1;
     context.fillStyle = corners[i] ? colour('accent') : colour('page');
     context.fillRect(x, y, w - 1, h - 1);
     context.globalAlpha = 1;
@@ -74,13 +74,12 @@ function cameraSection(camera) {
     for (let i = 0; i < 3; ++i)
       rows.push([cell('position ' + 'xyz'[i], 'key'), cell((1e3 * camera.p_B_C_m[i]).toFixed(2) + ' mm', 'n'),
                  cell((1e3 * camera.position_sigma_m[i]).toFixed(3) + ' mm', 'n')]);
-    rows.push([cell('rotation w x y z', 'key'), cell(camera.q_B_C.map(q => q.toFixed(5)).join(' '), 'n'),
-               cell(camera.rotation_sigma_deg.map(s => s.toFixed(4)).join(' ') + ' deg', 'n')]);
+    rows.push([cell('rotation w x y z', 'key'), cell(camera.q_B_C.map(q => q.toFixed(5)).join(' ')),
+               cell(camera.rotation_sigma_deg.map(s => s.toFixed(4)).join(' ') + ' deg')]);
   }
   if (camera.time_offset_s !== undefined)
     rows.push([cell('time offset', 'key'), cell((1e3 * camera.time_offset_s).toFixed(3) + ' ms', 'n'),
                cell((1e3 * camera.time_offset_sigma_s).toFixed(4) + ' ms', 'n')]);
-  const shape = 300 * Math.min(1, camera.resolution_px[1] / camera.resolution_px[0]);
   section('Camera ' + camera.name,
           make('p', {}, camera.modality + ', ' + camera.resolution_px.join(' x ') + ' px, ' + camera.lens + '. The target is in ' +
                camera.views + ' of ' + camera.pictures + ' pictures, at ' + camera.distance_m.map(d => d.toFixed(2)).join(' to ') +
@@ -88,9 +87,9 @@ function cameraSection(camera) {
                camera.reprojection_px.median.toFixed(3) + ' px median, ' + camera.reprojection_px.rms.toFixed(3) + ' px rms.'),
           make('div', {class: 'card'}, table(['', 'value', 'sigma'], rows)),
           make('div', {class: 'plots', style: 'margin-top: 12px'},
-               targetCanvas('Coverage', 'corners in each part of the image', (...a) => drawCells(camera, ...a), shape),
-               targetCanvas('Residuals over the image', kArrow + ' times their length', (...a) => drawResiduals(camera, ...a), shape),
-               targetCanvas('Residuals over time', 'px', (...a) => drawOverTime(camera, ...a), shape)));
+               targetCanvas('Coverage', 'corners in each part of the image', (...a) => drawCells(camera, ...a), camera.resolution_px),
+               targetCanvas('Residuals over the image', kArrow + ' times their length', (...a) => drawResiduals(camera, ...a), camera.resolution_px),
+               targetCanvas('Residuals over time', 'px', (...a) => drawOverTime(camera, ...a), camera.resolution_px)));
 }
 
 const valueText6 = value => Math.abs(value) >= 10 ? value.toFixed(3) : value.toFixed(6);
