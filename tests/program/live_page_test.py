@@ -23,6 +23,9 @@ PICTURES = None
 FACTS = "Object.fromEntries([...document.querySelectorAll('.facts div')].map(e => [e.children[0].textContent, e.children[1].textContent]))"
 # The empty share of the height of the camera card.
 EMPTY = "(card => (card.getBoundingClientRect().bottom - card.lastChild.getBoundingClientRect().bottom) / card.clientHeight)(document.querySelector('.shots').parentNode)"
+# What the camera card says before its first picture.
+UNFILLED = ("(empty => (document.body.append(empty), [getComputedStyle(empty, '::before').content, empty.remove()][0]))"
+            "(Object.assign(document.createElement('div'), {className: 'shots'}))")
 TOO_WIDE = "[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll, pre') && e.getBoundingClientRect().right > innerWidth + 0.5).length"
 
 
@@ -265,6 +268,7 @@ class LivePage(WithFlight):
         with self.serving("--live", "--dense") as (_, url):
             browser.open(url)
             browser.wait_for("document.querySelector('.says')?.textContent === 'Running, with a good pose.'")
+            self.assertEqual(browser.value(UNFILLED), '"No picture yet."')
             browser.wait_for("/^[1-9].* dense points/.test(document.getElementById('drawn').textContent)")
             browser.wait_for("document.querySelectorAll('.shot img').length === 2 && [...document.images].every(i => i.naturalWidth > 100)")
             before = browser.value(FACTS)
