@@ -17,6 +17,7 @@
 #include "common/status_line.hpp"
 #include "common/text.hpp"
 #include "edged/calibrate/collector.hpp"
+#include "edged/calibrate/imu_start.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -104,32 +105,30 @@ void fit_lenses(TargetCalibration& result, const std::vector<TargetViews>& camer
   if (!needed.empty()) throw InputError("too little for a calibration: " + needed);
 }
 
-/// The rotations between successive views, in pieces of 10 s, over which a drift shows.
+/// The rotations between views, in pieces of 10 s, over which a drift shows.
 std::vector<std::vector<Turn>> turns_of(const TargetCamera& camera) {
-  constexpr Duration kPiece = std::chrono::seconds(10), kLongest = std::chrono::milliseconds(300);
+  constexpr Duration kPiece = std::chrono::seconds(10);
   std::vector<std::vector<Turn>> pieces;
-  const std::vector<TargetView>& views = camera.views.views;
-  for (std::size_t i = 1; i < views.size(); ++i) {
-    const auto &from = camera.lens.T_C_T[i - 1], &to = camera.lens.T_C_T[i];
-    if (!from || !to || views[i].t - views[i - 1].t > kLongest) continue;
-    if (pieces.empty() || views[i].t - pieces.back().front().begin > kPiece) pieces.emplace_back();
-    pieces.back().push_back({views[i - 1].t, views[i].t, so3::log(from->rotation() * to->rotation().conjugate())});
+  for (const ViewTurn& turn : view_turns(camera.views, camera.lens.T_C_T)) {
+    if (pieces.empty() || turn.end - pieces.back().front().begin > kPiece) pieces.emplace_back();
+    pieces.back().push_back({turn.begin, turn.end, turn.angle_C});
   }
   return pieces;
 }
 
-/// The samples on the clock of the cameras, which the rotations of one of them determine.
-std::vector<ImuSample> with_found_clock(std::vector<ImuSample> imu, TargetCalibration& result) {
+/// The samples on the clock of the cameras, which the rotations of one of them determine. rate: of --imu-clock-rate,
+/// by which they are corrected already.
+std::vector<ImuSample> with_found_clock(std::vector<ImuSample> imu, double rate, TargetCalibration& result) {
   std::optional<ImuOffset> found;
   for (const TargetCamera& camera : result.cameras) {
     found = find_imu_offset(turns_of(camera), imu, {camera.views.name, camera.views.modality, {}, {}, {}}, false);
     if (found->determined()) break;
   }
   if (!found->determined()) throw undetermined_offset(result.recording, result.cameras.back().views.name, *found);
-  result.imu_clock = {{found->offset, found->rate}, found};
+  result.imu_clock = {{found->offset, rate * found->rate}, found};
+  const ImuClock left{found->offset, found->rate};
   const Timestamp first = imu.front().t;
-  for (ImuSample& sample : imu)
-    sample.t = first + found->offset + duration_from_seconds(to_seconds(sample.t - first) / found->rate);
+  for (ImuSample& sample : imu) sample.t = left.corrected(sample.t, first);
   return imu;
 }
 
@@ -251,7 +250,7 @@ int calibrate_from_target(const CalibOptions& options) {
   const ImuNoise noise = known_noise ? recording.calibration->imu : ImuNoise();
   std::vector<ImuSample> imu;
   if (!options.target.no_imu) imu = collector.imu();
-  if (find_clock && !imu.empty()) imu = with_found_clock(std::move(imu), result);
+  if (find_clock && !imu.empty()) imu = with_found_clock(std::move(imu), source.imu_clock_rate, result);
   const RigFitOptions rig_options{.progress = [&status](int round) {
     status.show(fmt::format("all cameras, motion and IMU: round {}", round + 1));
   }};

@@ -29,7 +29,7 @@ ImuOffset search(const Recording& recording, const RigCamera& camera, double rat
     if (!sample) return search.add(measurement), true;
     if (!first) first = sample->t;
     ImuSample corrected = *sample;
-    corrected.t = *first + duration_from_seconds(to_seconds(sample->t - *first) / rate);
+    corrected.t = ImuClock{Duration(0), rate}.corrected(sample->t, *first);
     return search.add(corrected), true;
   });
   return search.result();

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
@@ -18,6 +17,7 @@
 #include "edged/camera/output_frame.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/path_length.hpp"
+#include "edged/core/whole_file.hpp"
 #include "edged/eval/evaluation_json.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
@@ -293,8 +293,7 @@ Json trajectories_json(const LoadedRun& run, std::uintmax_t most) {
     texts[name] = nullptr;
     if (size > most) continue;
     most -= size;
-    std::ifstream in(file, std::ios::binary);
-    texts[name] = std::string(std::istreambuf_iterator<char>(in), {});
+    if (const auto text = read_file(file)) texts[name] = *text;
   }
   return texts;
 }

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "edged/calibrate/coverage.hpp"
 #include "edged/core/check.hpp"
 
 namespace edged {
@@ -43,9 +44,7 @@ TargetViews& ViewCollector::camera(const std::string& name, Modality modality, c
 void ViewCollector::search(TargetViews& camera, Timestamp t, const cv::Mat& picture) {
   ++camera.pictures;
   std::vector<TargetCorner> corners = detector_.detect(picture);
-  if (corners.empty()) return;
-  camera.views.push_back({t, std::move(corners)});
-  cells_[camera.name].add(camera.views.back(), camera.width, camera.height);
+  if (!corners.empty()) camera.views.push_back({t, std::move(corners)});
 }
 
 void ViewCollector::take_frame(const Frame& frame) {
@@ -86,8 +85,9 @@ std::vector<TargetViews> ViewCollector::cameras() const {
 std::string ViewCollector::progress() const {
   std::string out;
   for (const auto& [name, camera] : cameras_) {
-    const auto cells = cells_.find(name);
-    const std::string missing = cells == cells_.end() ? "all of the image" : cells->second.empty_parts();
+    CornerCells cells;
+    for (const TargetView& view : camera.views) cells.add(view, camera.width, camera.height);
+    const std::string missing = camera.views.empty() ? "all of the image" : cells.empty_parts();
     out += fmt::format("{}{} {} of {}{}{}", out.empty() ? "" : "; ", name, camera.views.size(), camera.pictures,
                        missing.empty() ? "" : ", missing ", missing);
   }

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "edged/calibrate/coverage.hpp"
 #include "edged/calibrate/target_picture.hpp"
 #include "edged/calibrate/target_view.hpp"
 
@@ -56,7 +55,6 @@ class ViewCollector {
   TargetDetector detector_;
   CollectorOptions options_;
   std::map<std::string, TargetViews> cameras_;
-  std::map<std::string, CornerCells> cells_;  // of each camera
   std::map<std::string, EventCamera> event_cameras_;
   std::map<std::string, Timestamp> last_frame_;
   std::vector<ImuSample> imu_;

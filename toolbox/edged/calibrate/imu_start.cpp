@@ -17,13 +17,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kShortest_s = 0.02, kLongest_s = 0.3;  // between two views
+constexpr Duration kShortest = std::chrono::milliseconds(20), kLongest = std::chrono::milliseconds(300);
 constexpr double kSearched_s = 1.0, kCoarse_s = 0.004, kFine_s = 0.0002;
 constexpr std::size_t kFewestTurns = 40;
 constexpr double kLeastCorrelation = 0.7;
 constexpr double kLeastRate = 6.0 * kDegree;  // [rad/s] rms about the axis that turned least
 
-/// From one view to the next: the rotation vector in the camera.
+/// A ViewTurn in seconds.
 struct CameraTurn {
   double begin_s, end_s;
   Vector3d angle_C;
@@ -32,16 +32,8 @@ struct CameraTurn {
 std::vector<CameraTurn> camera_turns(const TargetViews& camera, const std::vector<std::optional<SE3>>& T_C_T,
                                      Timestamp zero) {
   std::vector<CameraTurn> out;
-  std::optional<std::size_t> last;
-  for (std::size_t i = 0; i < camera.views.size(); ++i) {
-    if (!T_C_T[i]) continue;
-    if (last) {
-      const double begin_s = to_seconds(camera.views[*last].t - zero), end_s = to_seconds(camera.views[i].t - zero);
-      if (end_s - begin_s >= kShortest_s && end_s - begin_s <= kLongest_s)
-        out.push_back({begin_s, end_s, so3::log(T_C_T[*last]->rotation() * T_C_T[i]->rotation().conjugate())});
-    }
-    last = i;
-  }
+  for (const ViewTurn& turn : view_turns(camera, T_C_T))
+    out.push_back({to_seconds(turn.begin - zero), to_seconds(turn.end - zero), turn.angle_C});
   return out;
 }
 
@@ -150,6 +142,21 @@ void check_turns(const TargetViews& camera, const std::vector<CameraTurn>& turns
 }
 
 }  // namespace
+
+std::vector<ViewTurn> view_turns(const TargetViews& camera, const std::vector<std::optional<SE3>>& T_C_T) {
+  std::vector<ViewTurn> out;
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < camera.views.size(); ++i) {
+    if (!T_C_T[i]) continue;
+    if (last) {
+      const Timestamp begin = camera.views[*last].t, end = camera.views[i].t;
+      if (end - begin >= kShortest && end - begin <= kLongest)
+        out.push_back({begin, end, so3::log(T_C_T[*last]->rotation() * T_C_T[i]->rotation().conjugate())});
+    }
+    last = i;
+  }
+  return out;
+}
 
 ImuStart align_imu(const TargetViews& camera, const std::vector<std::optional<SE3>>& T_C_T,
                    std::span<const ImuSample> imu) {

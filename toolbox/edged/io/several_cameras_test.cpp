@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "edged/io/calib/calib_test_support.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/open_recording.hpp"
@@ -295,14 +296,7 @@ TEST_P(StereoBags, OfTwoDavisAreTwoCamerasOfEachKindByTheChainOfKalibr) {
   const std::vector<std::string> topics = {"/davis/left/events", "/davis/right/events", "/davis/left/image_raw",
                                            "/davis/right/image_raw"};
   const auto assigned_by = [&](const std::vector<std::string>& calibrated) {
-    std::string chain;
-    for (std::size_t i = 0; i < calibrated.size(); ++i)
-      chain += fmt::format(
-          "cam{}:\n  camera_model: pinhole\n  intrinsics: [200, 200, 120, 90]\n  distortion_model: none\n"
-          "  resolution: [240, 180]\n  rostopic: {}\n"
-          "  T_cam_imu: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n",
-          i, calibrated[i]);
-    const Calibration c = load_calibration(folder_.write("camchain-imucam.yaml", chain));
+    const Calibration c = load_calibration(folder_.write("camchain-imucam.yaml", kalibr_chain(calibrated, 240, 180)));
     RecordingOptions options = kAll;
     options.camera_topics = c.topics;
     return assigned(open(topics, options, &c.rig));

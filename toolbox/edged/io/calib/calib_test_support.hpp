@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include "edged/io/calibration.hpp"
@@ -23,6 +24,18 @@ inline std::vector<std::string> names_and_kinds(const Calibration& c) {
   std::vector<std::string> out;
   for (const RigCamera& camera : c.rig.cameras) out.push_back(camera.name + ":" + kind_name(camera.modality));
   return out;
+}
+
+/// A camchain of Kalibr with a camera for each topic, 10 cm beside the previous one.
+inline std::string kalibr_chain(const std::vector<std::string>& topics, int width, int height) {
+  std::string text;
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    text += fmt::format(
+        "cam{}:\n  camera_model: pinhole\n  distortion_model: none\n  intrinsics: [226, 226, {}, {}]\n"
+        "  resolution: [{}, {}]\n  rostopic: {}\n"
+        "  T_cam_imu: [[1, 0, 0, {}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n",
+        i, width / 2, height / 2, width, height, topics[i], -0.1 * static_cast<double>(i));
+  return text;
 }
 
 /// The camera is 10 cm in front of the IMU (along x of the body), with its axis along x.

@@ -41,20 +41,9 @@ TEST_F(Kalibr, AKalibrChainLeadsFromCameraToCamera) {
   EXPECT_THAT(load(replaced(both, "-0.2], [0, 1", "-0.3], [0, 1")).warnings, ElementsAre(HasSubstr("by 0.1 m")));
 }
 
-std::string chain_of(const std::vector<std::string>& topics, const char* resolution) {
-  std::string text;
-  for (std::size_t i = 0; i < topics.size(); ++i)
-    text += fmt::format(
-        "cam{}:\n  camera_model: pinhole\n  distortion_model: none\n  intrinsics: [226, 226, 173, 133]\n"
-        "  resolution: {}\n  rostopic: {}\n"
-        "  T_cam_imu: [[1, 0, 0, {}], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n",
-        i, resolution, topics[i], -0.1 * static_cast<double>(i));
-  return text;
-}
-
 TEST_F(Kalibr, ADavisThatWasCalibratedTwiceIsTwoCameras) {
-  const auto found = [&](const std::vector<std::string>& topics, const char* resolution = "[346, 260]") {
-    return names_and_kinds(load(chain_of(topics, resolution)));
+  const auto found = [&](const std::vector<std::string>& topics, int width = 346, int height = 260) {
+    return names_and_kinds(load(kalibr_chain(topics, width, height)));
   };
   const auto four = ElementsAre("cam0:events", "cam1:frames", "cam2:events", "cam3:frames");
   EXPECT_THAT(found({"/davis/left/events", "/davis/left/image_raw", "/davis/right/events", "/davis/right/image_raw"}),
@@ -62,7 +51,7 @@ TEST_F(Kalibr, ADavisThatWasCalibratedTwiceIsTwoCameras) {
   EXPECT_THAT(found({"/dvs_left/events", "/dvs_left/image_raw", "/dvs_right/events", "/dvs_right/image_raw"}), four);
   EXPECT_THAT(found({"/davis/events", "/davis2/image_raw"}),
               ElementsAre("events:events", "frames:frames", "cam1_events:events", "cam1_frames:frames"));
-  EXPECT_THAT(found({"/dvs/events", "/dvs/image_raw"}, "[640, 480]"), ElementsAre("cam0:events", "cam1:events"))
+  EXPECT_THAT(found({"/dvs/events", "/dvs/image_raw"}, 640, 480), ElementsAre("cam0:events", "cam1:events"))
       << "rendered from events";
 }
 

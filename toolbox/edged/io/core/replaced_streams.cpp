@@ -54,7 +54,7 @@ class WithImuClock final : public WithSamples {
       if (sample == nullptr) continue;
       if (!first_) first_ = sample->t;
       sample_ = *sample;
-      sample_->t = *first_ + clock_.offset + duration_from_seconds(to_seconds(sample->t - *first_) / clock_.rate);
+      sample_->t = clock_.corrected(sample->t, *first_);
     }
     return sample_->t;
   }

@@ -23,6 +23,11 @@ std::unique_ptr<Dataset> with_truth_file(std::unique_ptr<Dataset> recording, con
 struct ImuClock {
   Duration offset{0};
   double rate = 1.0;  ///< seconds of the IMU per second of the others
+
+  /// t_first: the first stamp of the IMU.
+  Timestamp corrected(Timestamp t_imu, Timestamp t_first) const {
+    return t_first + offset + duration_from_seconds(to_seconds(t_imu - t_first) / rate);
+  }
 };
 
 /// The recording with the stamps of its IMU corrected to the clock of the other sensors. The recording is in the order

@@ -82,6 +82,10 @@ class EvtDecoder::Sink {
   }
   void unknown() { ++counts_.unknown; }
 
+  /// word: of 32 bits, as EVT 2 and 4 have it and EVT 2.1 in its upper half.
+  void trigger(const State& state, std::uint32_t word) {
+    trigger(state, state.high << 6 | bits(word, 22, 6), bits(word, 8, 5), bits(word, 0, 1));
+  }
   [[gnu::noinline]] void trigger(const State& state, std::int64_t t_us, std::uint32_t channel, bool rising) {
     if (!state.timed) return;
     Edges& edges = triggers_[channel][rising ? 1 : 0];
@@ -169,7 +173,7 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
       sink.time_high(state, bits(word, 0, 28), 28, 6);
       break;
     case 0xA:
-      sink.trigger(state, state.high << 6 | bits(word, 22, 6), bits(word, 8, 5), bits(word, 0, 1));
+      sink.trigger(state, word);
       break;
     default:
       sink.no_change(type);
@@ -187,7 +191,7 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
       sink.time_high(state, bits(word, 32, 28), 28, 6);
       break;
     case 0xA:
-      sink.trigger(state, state.high << 6 | bits(word, 54, 6), bits(word, 40, 5), bits(word, 32, 1));
+      sink.trigger(state, bits(word, 32, 32));
       break;
     default:
       sink.no_change(type);
@@ -253,7 +257,7 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
       sink.time_high(state, bits(word, 0, 28), 28, 6);
       break;
     case 0x9:
-      sink.trigger(state, state.high << 6 | bits(word, 22, 6), bits(word, 8, 5), bits(word, 0, 1));
+      sink.trigger(state, word);
       break;
     case 0x6:  // others
     case 0x7:  // continued
