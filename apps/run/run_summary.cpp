@@ -115,10 +115,10 @@ void add_calibration(Figures& out, const std::vector<CalibrationFound>& calibrat
   out.json["calibration"] = Json::array();
   for (const CalibrationFound& c : calibration) {
     out.json["calibration"].push_back(to_json(c));
-    out.line("camera calibration", fmt::format("{:.2f}{} deg", c.rotation_deg, sigma(c.rotation_sigma_deg)),
-             fmt::format("of rotation off, time offset {:.2f}{} ms{} (given {:.2f}): {}", c.time_offset_ms,
-                         sigma(c.time_sigma_ms), c.events ? ", with the latency of its pixels" : "", c.given_offset_ms,
-                         c.camera));
+    out.line("camera calibration",
+             fmt::format("{:.2f}{} deg of rotation off, time offset {:.2f}{} ms{} (given {:.2f}): {}", c.rotation_deg,
+                         sigma(c.rotation_sigma_deg), c.time_offset_ms, sigma(c.time_sigma_ms),
+                         c.events ? ", with the latency of its pixels" : "", c.given_offset_ms, c.camera));
   }
 }
 
