@@ -54,8 +54,7 @@ class CheckRun {
   }
 
   CalibrationFit fit() {
-    return judge_fit(found_, check_.findings(*source_.dataset, read_truth(*source_.dataset).truth),
-                     statistics_.waiting_for());
+    return judge_fit(found_, check_.findings(*source_.dataset, read_truth(source_).truth), statistics_.waiting_for());
   }
   /// The estimated calibration, from all measurements up to the last good estimate.
   const Rig& rig() const { return rig_; }

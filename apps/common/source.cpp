@@ -123,6 +123,14 @@ ChosenImuClock chosen_imu_clock(const SourceOptions& options) {
   return found;
 }
 
+/// The ground truth is of the recording's first camera of this kind, and the calibration has one of the kind to match.
+bool is_of_truth(const Source& source, Modality modality) {
+  const DatasetInfo& info = source.dataset->info();
+  const auto is_kind = [modality](const RigCamera& camera) { return camera.modality == modality; };
+  return info.pose_frame == (modality == Modality::Events ? info.event_camera : info.frame_camera) &&
+         std::ranges::count_if(source.calibration.rig.cameras, is_kind) == 1;
+}
+
 }  // namespace
 
 std::optional<ChosenImuClock> found_imu_clock(const SourceOptions& options) {
@@ -191,6 +199,15 @@ OwnTruth read_truth(const Dataset& dataset) try { return {dataset.ground_truth()
   return {std::nullopt, e.what()};
 }
 
+OwnTruth read_truth(const Source& source) {
+  OwnTruth own = read_truth(*source.dataset);
+  if (!own.truth || own.truth->frame == "body") return own;
+  const std::vector<RigCamera>& cameras = source.calibration.rig.cameras;
+  if (std::ranges::find(cameras, own.truth->frame, &RigCamera::name) != cameras.end()) return own;
+  return {std::nullopt, fmt::format("{}: is of camera '{}', which calibration {} lacks", source.dataset->info().name,
+                                    own.truth->frame, source.calibration.rig.name)};
+}
+
 std::optional<double> cameras_start_after_s(const SourceOptions& options) {
   if ((!options.duration_s && !options.piece.to_s) || is_live(options)) return std::nullopt;
   const double end_s = options.duration_s ? options.piece.from_s + *options.duration_s : *options.piece.to_s;
@@ -225,7 +242,7 @@ void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wa
         source.dataset->info().name, camera.name, recorded_camera_names(source.dataset->info()), camera.name);
   }
   for (const Modality modality : {Modality::Events, Modality::Frames}) {
-    if (!uses(mode, modality)) continue;
+    if (!uses(mode, modality) && !is_of_truth(source, modality)) continue;
     const std::string assumed = match_camera(source.calibration.rig, source.dataset->info(), modality);
     if (!assumed.empty()) spdlog::warn(assumed);
   }

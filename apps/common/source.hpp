@@ -44,10 +44,10 @@ struct SourceOptions {
   std::optional<double> dim_frames;  ///< factor on the light of the frames
 };
 
-/// The ground truth of a recording. A run continues without it if it is not readable.
+/// The ground truth of a recording. A run continues without it if it is not usable.
 struct OwnTruth {
   std::optional<GroundTruth> truth;
-  std::string problem;  ///< why it is not readable; empty otherwise
+  std::string problem;  ///< why it is not usable; empty otherwise
 };
 OwnTruth read_truth(const Dataset& dataset);
 
@@ -100,8 +100,12 @@ std::optional<double> cameras_start_after_s(const SourceOptions& options);
 Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
 
-/// Renames the cameras that the mode needs to their names in the recording, with a warning for each assumption. Throws
-/// InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the calibration has.
+/// Not usable either if it is of a camera that the calibration lacks. After match_cameras().
+OwnTruth read_truth(const Source& source);
+
+/// Renames the cameras that the mode or the ground truth needs to their names in the recording, with a warning for each
+/// assumption. Throws InputError if that is ambiguous, or if the recording lacks one of the wanted cameras that the
+/// calibration has.
 void match_cameras(Source& source, Mode mode, const std::vector<std::string>& wanted = {});
 
 }  // namespace edged

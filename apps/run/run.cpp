@@ -60,7 +60,7 @@ Run::Run(RunContext& context, const std::vector<RunOutput>& outputs)
     : run_(context),
       odometry_(run_.source.calibration.rig, run_.source.calibration.imu, run_.mode, run_.config.odometry,
                 {kInOrder, run_.options.live ? Inference::OwnThread : Inference::Synchronous}),
-      truth_(read_truth(*run_.source.dataset)) {
+      truth_(read_truth(run_.source)) {
   if (run_.options.live && run_.source.seed)
     throw InputError::format("--live replays a recording; write one first: edged simulate --preset {}",
                              run_.info().name);
@@ -105,7 +105,7 @@ void Run::make_folder(const std::vector<RunOutput>& outputs) {
     spdlog::info(
         fmt::format("IMU clock: {} added to its stamps, {}", offset_text(*clock), offset_evidence(*clock->found)));
   if (!truth_.problem.empty())
-    spdlog::warn(fmt::format("the ground truth cannot be read, so nothing is compared with it: {}", truth_.problem));
+    spdlog::warn(fmt::format("the ground truth cannot be used, so nothing is compared with it: {}", truth_.problem));
 }
 
 RunSummary Run::go() {
@@ -194,8 +194,8 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
   add_dropped(end.summary.repairs, end.counters);
   end.summary.live = reader.live_summary(end.counters);
   if (!truth_.problem.empty())
-    end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be read: " + truth_.problem,
-                                            "correct or remove the file: this run is not compared with ground truth"});
+    end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be used: " + truth_.problem,
+                                            "correct it; edged eval TRUTH trajectory.tum compares later"});
   {
     const auto timer = run_.timings.measure("final_trajectory");
     end.final_trajectory = odometry_.final_trajectory();

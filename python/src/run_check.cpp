@@ -38,7 +38,7 @@ class PyRunCheck {
     try {
       truth = dataset_.ground_truth();
     } catch (const InputError& e) {
-      spdlog::warn(fmt::format("ground truth: cannot be read: {}", e.what()));
+      spdlog::warn(fmt::format("ground truth: cannot be used: {}", e.what()));
     }
     log(check_.findings(dataset_, truth));
   }

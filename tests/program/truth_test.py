@@ -7,6 +7,8 @@ import re
 import shutil
 import unittest
 
+import yaml
+
 from program import WithFlight, edged
 
 
@@ -92,14 +94,28 @@ class Truth(WithFlight):
         out = self.folder / "run"
         result = edged("run", recording, "--mode", "frames", "--duration", 3, "--out", out, "--quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("ground truth cannot be read", result.stderr)
+        self.assertIn("ground truth cannot be used", result.stderr)
         log = (out / "run.log").read_text()
-        self.assertLess(log.index("ground truth cannot be read"), log.index("started"))
+        self.assertLess(log.index("ground truth cannot be used"), log.index("started"))
         for name in ("metrics.json", "report.html", "map.ply", "trajectory.tum"):
             self.assertGreater((out / name).stat().st_size, 0, name)
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertIsNone(metrics["ate_rmse_m"])
-        self.assertTrue(metrics["findings"][0]["text"].startswith("ground truth: cannot be read: "))
+        self.assertTrue(metrics["findings"][0]["text"].startswith("ground truth: cannot be used: "))
+
+    def test_a_truth_of_a_camera_that_the_mode_does_not_use_is_compared_with(self):
+        rig = yaml.safe_load((self.flight / "calibration.yaml").read_text())
+        calib, out = self.folder / "rig.yaml", self.folder / "run"
+        for camera in rig["cameras"]:
+            camera["name"] = f"my_{camera['name']}"
+        for cameras, known in ((rig["cameras"], True), ([c for c in rig["cameras"] if c["modality"] == "frames"], False)):
+            calib.write_text(yaml.safe_dump({**rig, "cameras": cameras}))
+            result = edged("run", self.flight, "--calib", calib, "--mode", "frames", "--to", 3, "--json", "--force", "--out", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            metrics = json.loads(result.stdout)
+            self.assertEqual(metrics["ate_rmse_m"] is not None, known)
+            self.assertEqual([f["text"] for f in metrics["findings"] if "ground truth" in f["text"]], [] if known else
+                             [f"ground truth: cannot be used: {self.flight.name}: is of camera 'events', which calibration {rig['name']} lacks"])
 
     def test_a_truth_from_another_file_is_compared_with(self):
         truth = self.folder / "mocap.tum"
