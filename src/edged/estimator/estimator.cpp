@@ -97,7 +97,8 @@ EstimatorResult Estimator::add(const EstimatorInput& input) {
   result.noise_at_rest = standstill_.noise_at_rest();
   if (input.motion.gap_s() > 0.0) supported_at_ = input.t;  // a turn in place is found by the gyro
   const std::optional<FlowVelocity> turning = turning_in_place(input);
-  result.standstill = standstill_.still() || stationary_by_vision() || turning.has_value();
+  result.turning = turning.has_value();
+  result.standstill = standstill_.still() || stationary_by_vision() || result.turning;
   if (start(input, result) || !initialized_) return result;
   append(input, turning);
   result.velocity_observed = external_.velocity_observed(input.t);

@@ -30,6 +30,7 @@ struct EstimatorResult {
   double imu_strain = 0.0;          ///< see imu_strain() [sigma]
   std::vector<MarginalizedKeyframe> marginalized_keyframes;  ///< with this input
   bool standstill = false;
+  bool turning = false;                   ///< in place, which is a standstill, too
   std::optional<ImuNoise> noise_at_rest;  ///< measured in this rest
   bool velocity_observed = false;         ///< the velocity was measured recently, by an external sensor
   bool new_frame = false;                 ///< the estimator has started (again) with this input, in a frame of its own

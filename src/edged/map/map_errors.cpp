@@ -4,9 +4,6 @@
 
 #include <algorithm>
 
-#include "edged/core/angles.hpp"
-#include "edged/map/tuning.hpp"
-
 namespace edged {
 std::optional<LinearizedObservation> linearised(const MapObservation& observation, const SE3& T_M_B, const SE3& T_M_K,
                                                 const SE3& T_B_C) {
@@ -44,9 +41,8 @@ Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, doubl
   return Q;
 }
 
-GravityObservation observed_gravity(const SE3& T_O_B, double dt) {
-  constexpr double kTilt_rad = kMapTuning.tilt_deg * kDegree;
-  return {T_O_B.R().row(2), std::min(dt / kMapTuning.tilt_time_s, 1.0) / (kTilt_rad * kTilt_rad)};
+GravityObservation observed_gravity(const SE3& T_O_B, double dt, double sigma) {
+  return {T_O_B.R().row(2), std::min(dt / kMapTuning.tilt_time_s, 1.0) / (sigma * sigma)};
 }
 
 /// r = up_M - up_B, both in B; J = skew(up_M).

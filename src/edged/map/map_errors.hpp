@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "edged/core/angles.hpp"
+#include "edged/map/tuning.hpp"
 #include "edged/options/map.hpp"
 #include "edged/se3.hpp"
 
@@ -60,8 +62,9 @@ struct GravityObservation {
   Eigen::Vector3d up_B;
   double information;
 };
-/// dt: the time that it stands for [s]. The odometry's tilt never drifts, but its error changes slowly.
-GravityObservation observed_gravity(const SE3& T_O_B, double dt);
+/// dt: the time that it stands for [s]; sigma: of the odometry's tilt [rad], which never drifts, but its error changes
+/// slowly.
+GravityObservation observed_gravity(const SE3& T_O_B, double dt, double sigma = kMapTuning.tilt_deg * kDegree);
 
 /// The observation of gravity in the normal equations of a pose, H of the Gauss-Newton step and g = J^T W r, by the
 /// rotation error alone.

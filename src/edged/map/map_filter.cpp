@@ -23,7 +23,8 @@ constexpr double kMedianOfSquares = 1.386;  // of a two-dimensional unit normal
 
 }  // namespace
 
-void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma) {
+void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma,
+                        double tilt_sigma) {
   T_O_B_ = T_O_B;
   T_M_B_ = T_M_O * T_O_B;
   t_ = updated_ = t;
@@ -31,7 +32,19 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
   P_.topRows<6>().setZero();
   P_.leftCols<6>().setZero();
   P_.topLeftCorner<3, 3>() = position_sigma * position_sigma * Eigen::Matrix3d::Identity();
-  P_.block<3, 3>(3, 3) = yaw_sigma * yaw_sigma * up_B * up_B.transpose();
+  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
+  P_.block<3, 3>(3, 3) =
+      yaw_sigma * yaw_sigma * along_up + tilt_sigma * tilt_sigma * (Eigen::Matrix3d::Identity() - along_up);
+  if (tilt_sigma > 0.0) tilt_sigma_ = tilt_sigma;
+  updated_tilt_sigma_ = tilt_sigma_;
+}
+
+void MapFilter::set_tilt_sigma(double sigma) {
+  sigma = std::max(sigma, kMapTuning.least_tilt_deg * kDegree);
+  const Eigen::Vector3d up_B = T_M_B_.R().row(2);
+  const double learned = std::max(square(tilt_sigma_) - square(sigma), 0.0);
+  P_.block<3, 3>(3, 3) += learned * (Eigen::Matrix3d::Identity() - up_B * up_B.transpose());
+  tilt_sigma_ = sigma;
 }
 
 void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift) {
@@ -286,12 +299,15 @@ std::optional<SE3> MapFilter::update(std::span<const MapObservation> observation
   if (!(median_residual(observations, rows, update.error) < config_.max_misfit)) return std::nullopt;
   update_covariance(update);
   updated_ = t_;
+  updated_tilt_sigma_ = tilt_sigma_;
   return correct(update.error);
 }
 
-/// Adds the odometry's observation of gravity since the last update.
+/// Adds the odometry's observation of gravity since the last update, and what it has learned of it since then.
 void MapFilter::add_gravity(Information& sum) const {
-  const LinearizedGravity gravity = linearised(observed_gravity(T_O_B_, to_seconds(t_ - updated_)), T_M_B_);
+  GravityObservation observed = observed_gravity(T_O_B_, to_seconds(t_ - updated_), tilt_sigma_);
+  observed.information += std::max(1.0 / square(tilt_sigma_) - 1.0 / square(updated_tilt_sigma_), 0.0);
+  const LinearizedGravity gravity = linearised(observed, T_M_B_);
   sum.H.block<3, 3>(3, 3) += gravity.H;
   sum.g.segment<3>(3) += gravity.g;
 }
@@ -331,6 +347,7 @@ SE3 MapFilter::close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& cov
   const Update update = solved(sum);
   update_covariance(update);
   updated_ = t_;
+  updated_tilt_sigma_ = tilt_sigma_;
   return correct(update.error);
 }
 

@@ -30,8 +30,11 @@ class MapFilter {
                      int max_active = kMapTuning.active_keyframes)
       : config_(config), fixed_keyframes_(fixed_keyframes), max_active_(max_active) {}
 
-  /// A new frame O of the odometry: its pose in M is uncertain, with these sigmas [m], [rad] of position and yaw.
-  void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma);
+  /// A new frame O of the odometry: its pose in M is uncertain, with these sigmas [m], [rad] of position, yaw and tilt.
+  void restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double position_sigma, double yaw_sigma,
+               double tilt_sigma = 0.0);
+  /// The odometry is that uncertain of its tilt [rad]. What it has learned of that since the last call has turned it.
+  void set_tilt_sigma(double sigma);
   /// Prediction to T_O_B. drift: factor on the drift in the options. Before it, the active keyframes beyond
   /// max_active that were activated longest ago are deactivated.
   void predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift = 1.0);
@@ -59,6 +62,7 @@ class MapFilter {
   SE3 close(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance);
 
   const SE3& T_M_B() const { return T_M_B_; }
+  double tilt_sigma() const { return tilt_sigma_; }
   const std::vector<SE3>& keyframes() const { return T_M_K_; }
   /// Covariance of the body relative to the map's first keyframe.
   Matrix6d covariance() const { return P_.topLeftCorner<6, 6>(); }
@@ -106,6 +110,7 @@ class MapFilter {
   MapFilterConfig config_;
   bool fixed_keyframes_;
   int max_active_;
+  double tilt_sigma_ = kMapTuning.tilt_deg * kDegree, updated_tilt_sigma_ = tilt_sigma_;  ///< now, at the last update
   SE3 T_O_B_, T_M_B_;
   Timestamp t_, updated_;
   static constexpr Eigen::Index kInactive = -1;

@@ -348,6 +348,27 @@ TEST(MapFilter, KeepsTheTiltOfTheOdometryWhereEachMatchTurnsItALittle) {
   EXPECT_LT(std::acos(T_M_O.R()(2, 2)), 2.0 * M_PI / 180.0) << "11.7 deg without gravity";
 }
 
+/// Body and keyframe were placed with the tilt of the start; then the odometry learns its tilt, and turns.
+TEST(MapFilter, TurnsTheWholeMapAsTheOdometryLearnsItsTilt) {
+  constexpr double kBefore_rad = 0.03, kNow_rad = 0.002;
+  const auto turn_after = [](double sigma_before, double sigma_now, double learned_rad) {
+    World world(3);
+    MapFilter filter(config_of_world());
+    filter.restart(SE3(), World::truth(0.0), Timestamp{}, 0.0, 0.0, sigma_before);
+    filter.add_keyframe(SE3(), World::truth(0.0), Timestamp{});
+    filter.predict(SE3(), SE3(so3::exp({0.0, learned_rad, 0.0}), Eigen::Vector3d::Zero()) * World::truth(4.0),
+                   timestamp_from_seconds(4.0));
+    filter.set_tilt_sigma(sigma_now);
+    const auto observations = world.observations({World::truth(0.0)}, 0, 4.0, 0.0);
+    EXPECT_TRUE(filter.update(observations, observations.size(), {world.T_B_C}));
+    const SE3 T_K_B = filter.keyframes().front().inverse() * filter.T_M_B();
+    EXPECT_LT((World::truth(0.0) * T_K_B * World::truth(4.0).inverse()).translation().norm(), 0.02);
+    return so3::log((filter.keyframes().front() * World::truth(0.0).inverse()).rotation()).y();
+  };
+  EXPECT_NEAR(turn_after(kBefore_rad, kNow_rad, -kBefore_rad), -kBefore_rad, 0.2 * kBefore_rad);
+  EXPECT_NEAR(turn_after(kNow_rad, kNow_rad, -0.2 * kBefore_rad), 0.0, 0.1 * kBefore_rad) << "it was known";
+}
+
 TEST(MapFilter, IsLessSureOfAnOdometryThatDriftsMore) {
   const auto variance_after = [](double drift) {
     MapFilter filter(config_of_world());

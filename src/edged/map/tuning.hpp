@@ -26,6 +26,9 @@ struct MapTuning {
   double min_matched_share = 0.3;
   double gate_sigmas = 3.0;    ///< bound of a prediction: of a search, and of the drift along a loop
   double min_search_px = 2.0;  ///< radius
+  /// Median motion of the matched points since the last match. Patches that move less are off by the same amount again
+  /// (decision 027): nothing changes from 1 to 10 px.
+  double new_view_px = 3.0;
 
   // Places by appearance (decision 029).
   int max_descriptor_bits = 64;          ///< by which descriptors of one point differ, of 256
@@ -43,7 +46,8 @@ struct MapTuning {
   std::size_t parents = 3;     ///< that a deactivated keyframe depends on: with one, what it shares with others is lost
   std::size_t parent_candidates = 10;  ///< for the next parent, after the first
   double cauchy_sigmas = 2.0;          ///< scale of the robust loss of map matches
-  double tilt_deg = 0.3;               ///< sigma of the odometry's roll and pitch with cheap IMUs; 0.05 with good ones
+  double tilt_deg = 0.3;               ///< sigma of the odometry's roll and pitch, where it is not known
+  double least_tilt_deg = 0.05;        ///< and where it is, at least: with good IMUs
   double tilt_time_s = 10.0;           ///< after which the error of the tilt is another one
 
   // Final trajectory (decision 028).

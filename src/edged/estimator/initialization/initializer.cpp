@@ -4,11 +4,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "edged/core/angles.hpp"
+#include "edged/core/directions.hpp"
 #include "edged/estimator/external/external_factors.hpp"
 #include "edged/estimator/solver/covariance.hpp"
 #include "edged/estimator/solver/solver.hpp"
@@ -75,9 +75,7 @@ struct StartSigmas {
 StartSigmas sigmas_of_newest(const Window& window) {
   const std::optional<Matrix15d> P = covariance(window, window.newest_id());
   if (!P) return {};
-  const Eigen::Matrix<double, 2, 3> horizontal = window.newest().T_O_B().R().topRows<2>();
-  const Eigen::Matrix2d tilt = horizontal * P->block<3, 3>(3, 3) * horizontal.transpose();
-  return {std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tilt).eigenvalues()[1]),
+  return {tilt_sigma(window.newest().T_O_B().R(), P->block<3, 3>(3, 3)),
           std::sqrt(P->diagonal().segment<3>(6).maxCoeff())};
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "edged/core/check.hpp"
+#include "edged/core/directions.hpp"
 #include "edged/pipeline/tuning.hpp"
 
 namespace edged {
@@ -205,7 +206,9 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     session_.started_at_O = body_.now().T_O_B.translation();
     session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
     session_.uncertainty.scale_sigma.reset();
-    mapper_.restart(T_new_old, body_.now());
+    if (const std::optional<Matrix15d> P = session_.estimator.covariance())
+      session_.tilt_sigma = tilt_sigma(body_.now().T_O_B.R(), P->block<3, 3>(3, 3));
+    mapper_.restart(T_new_old, body_.now(), session_.tilt_sigma);
   } else if (body_.gyro_was_saturated() || body_.gap_s() > kPipelineTuning.max_gap_s) {
     mapper_.reset_uncertainty(body_.now(), body_.gap_s());
     if (body_.gap_s() > kPipelineTuning.max_gap_s) place_.end_gap();
@@ -256,7 +259,8 @@ bool Localization::update_map(Timestamp t, const VisionOutput& seen, const Estim
   if (config_.map.localize_only && mapper_.localized() &&
       status_.since_visual_update_s() > kPipelineTuning.max_unsupported_s)
     mapper_.reset_uncertainty(body_.now());
-  mapper_.predict(body_.now(), result.standstill);
+  const Motion motion = result.turning ? Motion::Turning : result.standstill ? Motion::None : Motion::Any;
+  mapper_.predict(body_.now(), motion, session_.tilt_sigma);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
   if (!images.empty()) {
     relocalized = mapper_.localize(t, images, place_.doubt(true));
@@ -348,6 +352,7 @@ void Localization::update_covariance(Timestamp t) {
       session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
     session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
     session_.covariance = covariance_in_map(*P);
+    session_.tilt_sigma = tilt_sigma(newest.T_O_B.R(), P->block<3, 3>(3, 3));
   }
 }
 

@@ -74,6 +74,7 @@ class Localization {
     Uncertainty uncertainty = {};                            ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
+    double tilt_sigma = 0.0;  ///< [rad]; 0: not known
     Eigen::Vector3d started_at_O = Eigen::Vector3d::Zero();
   };
   Session new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier, Timestamp until) const;

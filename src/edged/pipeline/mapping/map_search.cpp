@@ -93,7 +93,7 @@ Recognition recognize_place(const KeyframeMap& map, const MapQuery& query, const
 
 MapFilter filter_at(const MapFilter& filter, const SE3& T_M_O, const SE3& T_O_B, Timestamp t) {
   MapFilter there = filter;
-  there.restart(T_M_O, T_O_B, t, kMapTuning.same_place_m, kMapTuning.same_place_rad);
+  there.restart(T_M_O, T_O_B, t, kMapTuning.same_place_m, kMapTuning.same_place_rad, filter.tilt_sigma());
   return there;
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "edged/core/statistics.hpp"
 #include "edged/map/tuning.hpp"
 #include "edged/pipeline/mapping/final_optimization.hpp"
 
@@ -39,22 +40,22 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       record_(config.filter),
       loops_(config) {}
 
-void Mapper::restart(const SE3& T_new_old, const OdomState& now) {
+void Mapper::restart(const SE3& T_new_old, const OdomState& now, double tilt_sigma) {
   odom_to_map_.restart(T_new_old, now);
-  begin_start(now);
+  begin_start(now, tilt_sigma);
 }
 
 void Mapper::reset_uncertainty(const OdomState& now, double gap_s) {
   odom_to_map_.restart(now.t);
-  begin_start(now, gap_s);
+  begin_start(now, filter_.tilt_sigma(), gap_s);
 }
 
-void Mapper::begin_start(const OdomState& now, double gap_s) {
+void Mapper::begin_start(const OdomState& now, double tilt_sigma, double gap_s) {
   const bool first = map_.keyframes().empty() || !localized_period().contains(map_.keyframes().back().t);
   const double position_sigma = first ? 0.0 : kMapTuning.same_place_m,
                yaw_sigma = first ? 0.0 : kMapTuning.same_place_rad;
   T_M_O_dead_reckoning_ = odom_to_map_.T_M_O();
-  filter_.restart(T_M_O_dead_reckoning_, now.T_O_B, now.t, position_sigma, yaw_sigma);
+  filter_.restart(T_M_O_dead_reckoning_, now.T_O_B, now.t, position_sigma, yaw_sigma, tilt_sigma);
   if (record_.empty()) last_match_ = now.t;
   record_.restart({now.t, now.T_O_B}, kMapTuning.same_place_m, kMapTuning.same_place_rad);
   started_ = now.t;
@@ -100,9 +101,12 @@ std::optional<SavedMap> Mapper::save() const {
   return now;
 }
 
-void Mapper::predict(const OdomState& now, bool at_rest) {
+void Mapper::predict(const OdomState& now, Motion motion, double tilt_sigma) {
+  const bool at_rest = motion != Motion::Any;
   const bool young = dead_reckoning_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
-  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, young ? kMapTuning.young_drift_factor : 1.0);
+  const double drift = motion == Motion::None ? 0.0 : young ? kMapTuning.young_drift_factor : 1.0;
+  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, drift);
+  if (tilt_sigma > 0.0) filter_.set_tilt_sigma(tilt_sigma);
   predicted_ = now.t;
   if (at_rest) last_match_ = now.t;
   if (!at_rest) path_m_ += (now.T_O_B.translation() - p_O_B_).norm();
@@ -121,6 +125,7 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search
   if (!corrected) return false;
   odom_to_map_.correct(t, *corrected);
   last_match_ = t;
+  T_M_B_matched_ = filter.T_M_B();
   matches_.clear();
   for (const Candidate& candidate : search.candidates) {
     if (!config_.localize_only) map_.record_search(candidate, t);
@@ -136,11 +141,27 @@ bool Mapper::update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search
   return true;
 }
 
+/// The matched points are seen in about the same directions as at the last match: their errors would be the same, too.
+bool Mapper::same_view(double focal_px) const {
+  if (relocalizing_ || loaded_map_until_ || matches_.empty()) return false;
+  const SE3 T_before_M = T_M_B_matched_.inverse(), T_B_M = filter_.T_M_B().inverse();
+  std::vector<double> moved_px;
+  for (const MapMatch& match : matches_) {
+    const Eigen::Vector3d before = (T_before_M * match.p_W).normalized(), now = (T_B_M * match.p_W).normalized();
+    moved_px.push_back(focal_px * (now - before).norm());
+  }
+  return median(std::move(moved_px)) < kMapTuning.new_view_px;
+}
+
 bool Mapper::localize(Timestamp t, std::span<const PosedImage> images, double place_sigma) {
   // In a map of another run no dead reckoning rejects wrong places: two instants that agree must be further apart.
   const double interval_s =
       relocalizing_ && !loaded_map_until_ ? kMapTuning.relocalization_interval_s : config_.min_interval_s;
   if (last_search_ && to_seconds(t - *last_search_) < interval_s) return false;
+  if (same_view(images.front().image.model.mean_focal())) {
+    last_match_ = t;
+    return false;
+  }
   last_search_ = t;
   matches_.clear();
   // Far from where dead reckoning has them, older points match by chance.

@@ -27,20 +27,24 @@
 
 namespace edged {
 
+/// What is known of the body's motion: none at rest, a rotation alone where it turns in place.
+enum class Motion { Any, Turning, None };
+
 class Mapper {
  public:
   /// lost_after_s: StatusConfig's. For this time the last estimate may have been without landmarks.
   Mapper(const MapConfig& config, double lost_after_s);
 
-  /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one.
-  void restart(const SE3& T_new_old, const OdomState& now);
+  /// The estimator has started in a new O. T_new_old: from the old O to the new one; now: the body in the new one;
+  /// tilt_sigma: of its tilt [rad].
+  void restart(const SE3& T_new_old, const OdomState& now, double tilt_sigma = 0.0);
   /// O continues, but the motion until now is not known well: its pose in M is uncertain, as after a start. gap_s: for
   /// so long there was no measurement.
   void reset_uncertainty(const OdomState& now, double gap_s = 0.0);
   /// A new epoch of stamps begins: the map is discarded, unless it never changes, and the body continues from its pose.
   void begin_epoch();
-  /// The odometry has reached `now`; at_rest: it is known to stand still.
-  void predict(const OdomState& now, bool at_rest = false);
+  /// The odometry has reached `now`. tilt_sigma: of its tilt [rad]; 0: not known.
+  void predict(const OdomState& now, Motion motion = Motion::Any, double tilt_sigma = 0.0);
   /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
   /// by place recognition: true when it has just been relocalized. place_sigma: of the body, by a loss or a gap [m].
   bool localize(Timestamp t, std::span<const PosedImage> images, double place_sigma = 0.0);
@@ -84,9 +88,10 @@ class Mapper {
   /// Creation times of keyframes whose pose relative to the body is known: not those of a map before relocalization in
   /// it.
   TimeInterval localized_period() const { return {.since = loaded_map_until_.value_or(Timestamp::min())}; }
-  void begin_start(const OdomState& now, double gap_s = 0.0);
+  void begin_start(const OdomState& now, double tilt_sigma, double gap_s = 0.0);
   bool update(MapFilter& filter, const SE3& T_M_O, const MapSearch& search, Timestamp t,
               std::span<const PosedImage> images);
+  bool same_view(double focal_px) const;
   std::optional<SE3> recognized_T_M_O(const PosedImage& posed, TimeInterval created) const;
   bool relocalize(Timestamp t, std::span<const PosedImage> images, bool matches_older);
   bool relocalize_by_appearance(Timestamp t, std::span<const PosedImage> images);
@@ -107,6 +112,7 @@ class Mapper {
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
   std::vector<MapMatch> matches_;      ///< in the newest images that were matched
+  SE3 T_M_B_matched_;                  ///< then
   std::optional<Timestamp> last_search_;
   Timestamp predicted_;            ///< newest pose of the odometry
   Timestamp last_match_;           ///< or rest
