@@ -96,6 +96,9 @@ def run(recording, mode="auto", options=None):
 
 
 def evaluate(estimate, truth, protocol="P3", max_gap_s=0.2, deltas_s=(1.0, 10.0)):
+    for name, poses in (("estimate", estimate), ("truth", truth)):
+        if not isinstance(poses, _numpy.ndarray):
+            raise TypeError(f"{name}: is a {type(poses).__name__}; give an array of edged.POSE, as edged.trajectory(steps) returns")
     return _json.loads(_evaluate_to_json(estimate, truth, protocol, max_gap_s, list(deltas_s)))
 
 

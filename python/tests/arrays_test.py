@@ -63,6 +63,12 @@ def test_stamps_that_are_no_whole_numbers_are_refused(odometry):
         odometry.add_frame("frames", 0.5, np.zeros((180, 240), np.uint8))
 
 
+def test_an_evaluation_of_no_array_names_what_it_takes():
+    poses = np.empty(0, edged.POSE)
+    assert "estimate: is a list; give an array of edged.POSE" in refusal(TypeError, edged.evaluate, [], poses)
+    assert "truth: is a NoneType" in refusal(TypeError, edged.evaluate, poses, None)
+
+
 def test_columns_that_do_not_fit_are_refused():
     assert "x: holds -1" in refusal(ValueError, edged.make_events, [1, 2], [-1, 5], [0, 0], [1, 1])
     assert "y: holds 65536" in refusal(ValueError, edged.make_events, [1], [1], [65536], [1])
