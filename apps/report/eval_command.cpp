@@ -56,6 +56,15 @@ Evaluation evaluate_untimed(const Trajectory& truth, const Trajectory& estimate,
   return result;
 }
 
+/// A folder is refused with the trajectory that it holds.
+const std::filesystem::path& no_folder(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return path;
+  for (const char* name : {"trajectory.tum", "groundtruth.txt"})
+    if (std::filesystem::exists(path / name))
+      throw InputError::format("{}: is a folder; give {}", path.string(), (path / name).string());
+  throw InputError::format("{}: is a folder; give the file of a trajectory", path.string());
+}
+
 /// A trajectory and how its file was read.
 struct ReadFile {
   std::filesystem::path file;
@@ -63,7 +72,7 @@ struct ReadFile {
   Trajectory poses;
 
   explicit ReadFile(const std::filesystem::path& path)
-      : file(path), form(find_trajectory_form(path)), poses(read_trajectory(path, form)) {
+      : file(no_folder(path)), form(find_trajectory_form(path)), poses(read_trajectory(path, form)) {
     if (!form.columns.doubt.empty())
       spdlog::warn(fmt::format("{}: read as {}; {}", file.string(), form.columns.said, form.columns.doubt));
   }

@@ -269,6 +269,13 @@ class Eval(WithFolder):
         short.write_text("".join(kitti.read_text().splitlines(keepends=True)[:100]))
         self.assert_refused(edged("eval", kitti, short), "200 poses", "100", "TUM")
 
+    def test_a_folder_is_refused_with_the_trajectory_in_it(self):
+        run = self.folder / "run"
+        run.mkdir()
+        self.assert_refused(edged("eval", self.truth, run), f"{run}: is a folder; give the file of a trajectory")
+        (run / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
+        self.assert_refused(edged("eval", self.truth, run), f"{run}: is a folder; give {run}/trajectory.tum")
+
     def test_other_clocks_are_refused(self):
         later = self.folder / "later.txt"
         later.write_text("".join(f"{5000 + i} 0 0 {i} 0 0 0 1\n" for i in range(9)))
