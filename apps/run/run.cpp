@@ -3,6 +3,7 @@
 #include "run/run.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <system_error>
@@ -52,6 +53,21 @@ std::vector<const char*> files_of(const std::vector<RunOutput>& outputs) {
   std::vector<const char*> files{"calibration.yaml", "run.log"};
   for (const RunOutput& output : outputs) files.insert(files.end(), output.files.begin(), output.files.end());
   return files;
+}
+
+/// Which complete results a run that was broken off has left, and what to do; nothing where there are none.
+std::string kept_text(const RunSummary& summary, const InputError& error) {
+  std::string cut = error.what();
+  for (const std::string& failure : summary.unwritten) cut += "\n" + failure;
+  std::vector<std::string> kept;
+  for (const char* name : {"trajectory.tum", "trajectory_final.tum", "states.csv", "map.ply", "metrics.json"}) {
+    const std::filesystem::path file = std::filesystem::path(summary.run.folder) / name;
+    if (std::filesystem::exists(file) && cut.find(file.string()) == std::string::npos) kept.emplace_back(name);
+  }
+  if (kept.empty()) return "";
+  return fmt::format(
+      "; {} holds complete, up to then: {}; correct the cause and run again, with --force to replace them",
+      summary.run.folder, fmt::join(kept, ", "));
 }
 
 }  // namespace
@@ -122,13 +138,18 @@ RunSummary Run::go() {
           observe(step, reader);
           return interrupt_signal() == 0;
         });
+  } catch (const InputError& e) {
+    throw InputError::format("{}{}", e.what(), kept_text(break_off(reader, e), e));
   } catch (const std::exception& e) {
-    // Earlier results stay, in complete files.
-    spdlog::info(fmt::format("broken off: {}", e.what()));  // main reports it
-    finish(reader, true);
+    break_off(reader, e);
     throw;
   }
   return finish(reader, false);
+}
+
+RunSummary Run::break_off(RunReader& reader, const std::exception& error) {
+  spdlog::info(fmt::format("broken off: {}", error.what()));  // main reports it
+  return finish(reader, true);
 }
 
 std::optional<Measurement> Run::next_measurement(RunReader& reader) {

@@ -27,6 +27,8 @@ class Run {
   void observe(const Step& step, RunReader& reader);
   void update_context();
   RunSummary finish(RunReader& reader, bool broken_off);
+  /// Earlier results stay, in complete files.
+  RunSummary break_off(RunReader& reader, const std::exception& error);
   RunEnd summarize(const RunReader& reader, bool broken_off);
   void compare(RunEnd& end) const;
 

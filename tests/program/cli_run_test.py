@@ -303,6 +303,15 @@ class Run(WithFlight):
                                 text=True, check=False, restore_signals=False, preexec_fn=lambda: resource.setrlimit(*limit))
         self.assert_refused(result, str(self.folder), "is the disk full?")
 
+    def test_a_disk_that_fills_during_a_run_leaves_complete_files_and_names_them(self):
+        limit = (resource.RLIMIT_FSIZE, (60_000, 60_000))  # states.csv is larger, trajectory.tum is not
+        result = subprocess.run([EDGED, "run", self.flight, "--out", self.folder / "run", "--quiet"], capture_output=True,
+                                text=True, check=False, restore_signals=False, preexec_fn=lambda: resource.setrlimit(*limit))
+        self.assert_refused(result, "states.csv: cannot be written", f"{self.folder}/run holds complete, up to then: trajectory.tum, ",
+                            "metrics.json; correct the cause and run again, with --force")
+        self.assertNotIn("states.csv, ", result.stderr)
+        self.assertEqual(len((self.folder / "run" / "trajectory.tum").read_text().splitlines()[-1].split()), 8)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
