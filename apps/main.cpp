@@ -22,6 +22,7 @@ constexpr const char* kFooter =
     "  edged simulate --out /tmp/flight          make a recording with ground truth\n"
     "  edged run /tmp/flight                     estimate its trajectory; prints the error\n"
     "  edged run /tmp/flight --mode events       the same from events and IMU alone\n"
+    "  edged run REC --calib head.yaml           your own; `edged calib --target` makes head.yaml\n"
     "  edged config packets                      options whose name contains `packets`\n"
     "\n"
     "Exit codes: 0 ok, 1 internal error, 2 wrong command line, 3 bad recording, calibration or option,\n"

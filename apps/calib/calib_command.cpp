@@ -242,7 +242,8 @@ void add_calib_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<CalibOptions>();
   CLI::App* calib = app.add_subcommand(
       "calib",
-      "Show a calibration: both directions of each transform, field of view, clock, IMU noise, suspicious values");
+      "Calibrate cameras and IMU by a target, or show, convert and check a calibration: transforms, clock, IMU noise, "
+      "suspicious values");
   CLI::Option* file = calib->add_option("FILE", options->file,
                                         "Calibration file or folder (format found by content), or the name of a rig");
   calib->add_option(

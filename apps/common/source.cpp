@@ -33,6 +33,7 @@ namespace edged {
 namespace {
 
 constexpr std::string_view kSimulatorPrefix = "sim:";
+constexpr std::string_view kMakesCalibration = "`edged calib --target` makes (docs/your-recording.md)";
 
 /// The calibration chosen by the user, if any.
 std::optional<Calibration> chosen_calibration(const SourceOptions& options) {
@@ -182,13 +183,13 @@ Source open_source(const SourceOptions& options) { return calibrated(options, op
 Source calibrated(const SourceOptions& options, Recording recording) {
   if (!recording.calibration)
     throw InputError::format(
-        "{}: has no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE", options.recording,
-        fmt::join(known_rigs(), ", "));
+        "{}: has no calibration of cameras and IMU; give --rig NAME (there are: {}) or --calib FILE, which {}",
+        options.recording, fmt::join(known_rigs(), ", "), kMakesCalibration);
   if (!recording.calibration->has_extrinsics)
     throw InputError::format(
         "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
-        "or --calib FILE",
-        options.calib.empty() ? options.recording : options.calib.string());
+        "or --calib FILE, which {}",
+        options.calib.empty() ? options.recording : options.calib.string(), kMakesCalibration);
   if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
   std::optional<int> seed;
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) seed = config->seed;

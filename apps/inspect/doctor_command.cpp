@@ -16,6 +16,7 @@
 #include "common/reading.hpp"
 #include "edged/checks/recording_check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {
@@ -39,10 +40,30 @@ void add_log(std::vector<std::string> lines, std::vector<Finding>& findings) {
 
 std::string next_step(const DoctorOptions& options, const Recording& recording, bool ill) {
   if (ill) return "correct the errors above, then " + command_line("doctor", options.source);
-  if (!recording.calibration)
-    return "edged calib --new CAMERA --out head.yaml, then " + command_line("doctor", options.source) +
-           " --calib head.yaml";
+  if (!recording.calibration || !recording.calibration->has_extrinsics) {
+    SourceOptions calibrated = options.source;
+    calibrated.rig.clear();
+    calibrated.calib = "head.yaml";
+    return "edged calib --target KIND --size MM MOVED --out head.yaml (MOVED: another recording, of a target), then " +
+           command_line("doctor", calibrated);
+  }
   return command_line("run", options.source);
+}
+
+/// A run uses all recorded kinds of cameras unless --mode leaves one out.
+void add_missing_cameras(const Recording& recording, std::vector<Finding>& findings) {
+  const std::vector<RigCamera> calibrated = calibrated_cameras(recording);
+  if (calibrated.empty()) return;
+  for (const Modality modality : {Modality::Events, Modality::Frames}) {
+    const auto recorded = recorded_cameras(recording.dataset->info());
+    if (std::ranges::find(recorded, modality, &RecordedCamera::modality) == recorded.end()) continue;
+    if (std::ranges::find(calibrated, modality, &RigCamera::modality) != calibrated.end()) continue;
+    findings.push_back(
+        {Severity::Warning, fmt::format("the calibration has no camera of the {}", kind_name(modality)),
+         fmt::format("of a DAVIS, `edged calib FILE --camera {}=both --out head.yaml` gives both its lens; else "
+                     "run with --mode {}",
+                     recording.calibration->rig.cameras.front().name, kind_name(calibrated.front().modality))});
+  }
 }
 
 int run_doctor(const DoctorOptions& options) {
@@ -64,6 +85,7 @@ int run_doctor(const DoctorOptions& options) {
         {Severity::Note,
          fmt::format("IMU clock: {} were added to its stamps, {}", offset_text(*clock), offset_evidence(*clock->found)),
          ""});
+  if (recording.calibration) add_missing_cameras(recording, findings);
   add_log(held.take(), findings);
   if (read.damage)
     findings.push_back({Severity::Error, *read.damage, "the findings above cover the recording up to there"});

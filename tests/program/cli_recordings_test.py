@@ -143,6 +143,22 @@ class Recordings(WithFlight):
         self.assertRegex(result.stdout, r"error +camera frames: its rotation to the IMU contradicts the gyro by (8[5-9]|9[0-5])\.\d deg \+- \d\.\d deg")
         self.assertRegex(result.stdout, r"warning +camera frames: t_imu = t_cam .*\n.*set time_offset")
 
+    def test_a_calibration_of_the_frames_of_a_davis_is_told_with_the_command_that_gives_events_the_lens(self):
+        frames, head = self.folder / "frames.yaml", self.folder / "head.yaml"
+        text = (self.flight / "calibration.yaml").read_text()
+        frames.write_text(text[:text.index('  - name: "events"')] + text[text.index('  - name: "frames"'):])
+        self.assert_refused(edged("run", self.flight, "--calib", frames, "--quiet"), "--camera frames=both", "--mode frames")
+        told = edged("doctor", self.flight, "--calib", frames)
+        self.assertRegex(told.stdout, r"warning +the calibration has no camera of the events\n.*--camera frames=both .*--mode frames")
+        self.assertEqual(edged("calib", frames, "--camera", "frames=both", "--out", head).returncode, 0)
+        self.assertIn("0 errors, 0 warnings", edged("doctor", self.flight, "--calib", head).stdout)
+
+    def test_the_next_step_without_a_calibration_is_to_make_one(self):
+        bag = self.folder / "flight.bag"
+        edged("convert", self.flight, bag, "--duration", 1, "--quiet")
+        self.assertRegex(edged("doctor", bag).stdout, rf"next +edged calib --target .*, then edged doctor {bag} --calib head.yaml\n$")
+        self.assert_refused(edged("run", bag, "--quiet"), "holds intrinsics only", "--rig NAME", "`edged calib --target` makes")
+
     def test_a_full_disk_ends_a_conversion_with_one_line(self):
         # Files of at most 20 kB stand for it.
         limit = (resource.RLIMIT_FSIZE, (20_000, 20_000))

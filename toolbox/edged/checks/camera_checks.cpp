@@ -140,7 +140,7 @@ void tell_rotation(const CameraCheck& check, Findings& out) {
                        "{:.3f} {:.3f} {:.3f}; {:.3f} {:.3f} {:.3f}] +- {:.1f} deg",
                        check.camera.name, R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1),
                        R(2, 2), check.agreement->rotation_sigma * kDegreesPerRadian),
-           "a run needs it and the lever arm: calibrate camera and IMU together, for instance with Kalibr");
+           "a run needs it and the lever arm: `edged calib --target` measures both");
 }
 
 void check_scale(const CameraCheck& check, Findings& out) {

@@ -23,11 +23,18 @@ std::string camera_list(const auto& cameras) {
 [[noreturn]] void refuse(const Rig& rig, const DatasetInfo& info, Modality modality, const std::string& reason) {
   const bool events = modality == Modality::Events;
   const std::string& wanted = events ? info.event_camera : info.frame_camera;
-  throw InputError::format(
-      "{}: holds {}; rig '{}' has the cameras {}: {}; name the camera of the {} '{}' in the calibration (`edged calib "
-      "FILE --camera NAME={}:{} --out rig.yaml` renames it), or run with --mode {}",
-      info.name, camera_list(recorded_cameras(info)), rig.name, camera_list(rig.cameras), reason, kind_name(modality),
-      wanted, kind_name(modality), wanted, events ? "frames" : "events");
+  const bool one_of_others = rig.cameras.size() == 1 && rig.cameras.front().modality != modality;
+  const std::string remedy =
+      one_of_others
+          ? fmt::format("; of a DAVIS, `edged calib FILE --camera {}=both --out rig.yaml` gives both its lens",
+                        rig.cameras.front().name)
+          : fmt::format(
+                "; name the camera of the {} '{}' in the calibration (`edged calib FILE --camera "
+                "NAME={}:{} --out rig.yaml` renames it)",
+                kind_name(modality), wanted, kind_name(modality), wanted);
+  throw InputError::format("{}: holds {}; rig '{}' has the cameras {}: {}{}, or run with --mode {}", info.name,
+                           camera_list(recorded_cameras(info)), rig.name, camera_list(rig.cameras), reason, remedy,
+                           events ? "frames" : "events");
 }
 
 /// The cameras beside the first must have the names of the rig: readers name them so where they can.
