@@ -26,8 +26,10 @@ class Texture {
 
  private:
   struct Level {
-    int bits = 0;  // side is 2^bits
-    std::vector<std::uint8_t> texels;
+    Level(const std::vector<std::uint8_t>& image, int image_bits);
+
+    int bits;                          // side is 2^bits
+    std::vector<std::uint8_t> texels;  // row by row, each followed by its first texel; after the last row, the first
   };
 
   /// At n positions, on one level of the pyramid.

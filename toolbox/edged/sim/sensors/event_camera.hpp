@@ -46,12 +46,16 @@ class EventCamera {
   };
   /// False in the refractory time of the pixel, without an event.
   bool fire(std::size_t pixel, std::int64_t t_ns, bool positive, std::vector<Event>& events);
-  void step_pixel(std::size_t pixel, float before, const Interval& interval, std::vector<Event>& events);
+  /// Lets the references leak, and sets crossed_.
+  void mark_crossings(float leak);
+  void step_pixel(std::size_t pixel, const Interval& interval, std::vector<Event>& events);
   void add_shot_noise(const Interval& interval, std::vector<Event>& events);
   void add_storm(const Interval& interval, double hz, std::vector<Event>& events);
   void add_hot_pixels(const Interval& interval, std::vector<Event>& events);
   /// Moves level_ from before_ towards target_ for dt seconds.
   void follow(std::span<const float> radiance, double dt);
+  /// By time; those of one time stay in their order.
+  void sort(std::vector<Event>& events);
   Event make_event(std::size_t pixel, std::int64_t t_ns, bool positive) const;
 
   EventCameraConfig config_;
@@ -67,7 +71,9 @@ class EventCamera {
   std::vector<float> level_, reference_;  // log brightness: now, and at the last event
   std::vector<float> target_;             // log brightness without the limited bandwidth
   std::vector<float> before_;             // level_ at the previous picture
+  std::vector<char> crossed_;             // 1 where a threshold has been crossed since the last picture
   std::vector<std::int64_t> last_ns_;     // of the last event
+  std::vector<Event> sorted_;             // what sort() sorts into
   Timestamp t_;
   bool started_ = false;
 };

@@ -73,6 +73,20 @@ TEST(EventCamera, MakesShotNoiseOfBothSigns) {
   EXPECT_NEAR(static_cast<double>(positive), 10.0 * kPixels * kPixels, 40.0);
 }
 
+TEST(EventCamera, SortsEventsByTimeHoweverFarThePicturesAreApart) {
+  EventCameraConfig config = quiet();
+  config.shot_hz = 100.0;
+  EventCamera camera(config, kPixels, kPixels, 1);
+  const std::vector<float> radiance(kPixels * kPixels, 1.0F);
+  double t_s = 0.0;
+  camera.update(timestamp_from_seconds(t_s), radiance);
+  for (const double step_s : {1e-3, 5e-3, 1.0, 30.0}) {
+    const std::vector<Event> events = camera.update(timestamp_from_seconds(t_s += step_s), radiance);
+    EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::t)) << step_s;
+    EXPECT_FALSE(events.empty()) << step_s;
+  }
+}
+
 TEST(EventCamera, KeepsTheRefractoryTime) {
   EventCameraConfig config = quiet();
   config.refractory_us = 150e3;

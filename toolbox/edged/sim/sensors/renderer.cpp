@@ -111,7 +111,7 @@ const Rendering& Renderer::render(const SE3& T_W_C, double t_s) {
   return out_;
 }
 
-void Renderer::cast(const FaceView& view, const PixelBox& box, int index) {
+void Renderer::cast(const FaceView& view, PixelBox box, int index) {
   const Eigen::Vector3f a = view.inverse_depth, u = view.u, v = view.v;
   const float half_u = view.half_u, half_v = view.half_v;
   for (int y = box.y_0; y <= box.y_1; ++y) {
@@ -123,9 +123,12 @@ void Renderer::cast(const FaceView& view, const PixelBox& box, int index) {
       const float w = a.x() * bx[x] + a.y() * by[x] + a.z() * bz[x];
       const float uw = u.x() * bx[x] + u.y() * by[x] + u.z() * bz[x];
       const float vw = v.x() * bx[x] + v.y() * by[x] + v.z() * bz[x];
-      const bool hit = (w > nearest[x]) & (std::abs(uw) <= half_u * w) & (std::abs(vw) <= half_v * w);
-      nearest[x] = hit ? w : nearest[x];
-      seen[x] = hit ? index : seen[x];
+      // Read in any case: else the compiler makes branches, and takes one pixel at a time.
+      const float nearest_before = nearest[x];
+      const int seen_before = seen[x];
+      const bool hit = (w > nearest_before) & (std::abs(uw) <= half_u * w) & (std::abs(vw) <= half_v * w);
+      nearest[x] = hit ? w : nearest_before;
+      seen[x] = hit ? index : seen_before;
     }
   }
 }

@@ -57,7 +57,7 @@ class Renderer {
     std::vector<Lamp> highlights;  ///< what the varnish reflects of each lamp; none without gloss
   };
 
-  void cast(const FaceView& view, const PixelBox& box, int index);
+  void cast(const FaceView& view, PixelBox box, int index);
   void shade();
   /// n pixels from `first` on, all of which see the face `index`.
   void shade_run(std::size_t index, std::size_t first, std::size_t n);
