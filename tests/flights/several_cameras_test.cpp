@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/sim/simulated_pair.hpp"
@@ -33,6 +34,14 @@ FlightRun fly(const Flight& flight, Mode mode, const std::string& cameras) {
   OdometryConfig config;
   config.cameras = cameras;
   return run_flight(flight.calibration, flight.measurements, mode, config);
+}
+
+/// Through the pair's flight, once a choice.
+const FlightRun& flown(Mode mode, const std::string& cameras) {
+  static std::map<std::pair<Mode, std::string>, FlightRun> runs;
+  const auto [run, is_new] = runs.try_emplace({mode, cameras});
+  if (is_new) run->second = fly(pair_flight(), mode, cameras);
+  return run->second;
 }
 
 double error_of(const Flight& flight, const FlightRun& run, const std::string& name) {
@@ -71,7 +80,7 @@ TEST(TwoOfAKind, AreNoWorseThanOneAndAllAreUsed) {
   for (const auto& [mode, one, two] : {std::tuple{Mode::Frames, "frames", "frames,frames2"},
                                        {Mode::Fused, "events,frames", "events,events2,frames"},
                                        {Mode::Events, "events", "events,events2"}}) {
-    const FlightRun alone = fly(flight, mode, one), both = fly(flight, mode, two);
+    const FlightRun &alone = flown(mode, one), &both = flown(mode, two);
     EXPECT_LT(error_of(flight, both, two), kAsGood * error_of(flight, alone, one));
     EXPECT_GT(fewest_tracks(both), 10.0) << two;
     for (const CameraStep& camera : both.steps.back().cameras)
@@ -88,7 +97,7 @@ double seconds_to_good(const FlightRun& run) {
 TEST(TwoOfAKind, StartAtOnceAndAreMoreAccurate) {
   for (const auto& [mode, one, two] :
        {std::tuple{Mode::Frames, "frames", "frames,frames2"}, {Mode::Events, "events", "events,events2"}}) {
-    const FlightRun alone = fly(pair_flight(), mode, one), both = fly(pair_flight(), mode, two);
+    const FlightRun &alone = flown(mode, one), &both = flown(mode, two);
     std::cout << two << ": Good after " << seconds_to_good(both) << " s, one camera " << seconds_to_good(alone)
               << " s\n";
     // The body rests at first: event cameras see nothing.
@@ -134,7 +143,7 @@ TEST(EventsAndFramesOfTwoLenses, ShareLandmarksAndStartAtOnce) {
 }
 
 TEST(TwoOfAKind, GiveTheSameBitsTwice) {
-  const FlightRun first = fly(pair_flight(), Mode::Fused, "events,events2,frames,frames2");
+  const FlightRun& first = flown(Mode::Fused, "events,events2,frames,frames2");
   const FlightRun second = fly(pair_flight(), Mode::Fused, "frames2,frames,events2,events");
   ASSERT_EQ(first.steps.size(), second.steps.size());
   for (std::size_t i = 0; i < first.steps.size(); ++i)
@@ -168,7 +177,7 @@ TEST(TwoOfAKind, HaveClocksOfTheirOwn) {
   }
   std::ranges::stable_sort(shifted.measurements, {}, [](const Measurement& m) { return *first_stamp(m); });
   const std::string all = "events,events2,frames,frames2";
-  const FlightRun straight = fly(pair_flight(), Mode::Fused, all), run = fly(shifted, Mode::Fused, all);
+  const FlightRun &straight = flown(Mode::Fused, all), run = fly(shifted, Mode::Fused, all);
   EXPECT_LT(error_of(shifted, run, "clocks apart"), 2.0 * error_of(pair_flight(), straight, "one clock"));
   EXPECT_GT(fewest_tracks(run), 10.0);
 }
