@@ -174,7 +174,7 @@ TEST(Checks, GuessesTheRotationOfACameraThatHasNone) {
   CameraCheck check = agreeing();
   check.has_extrinsics = false;
   check.agreement->R_B_C << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  EXPECT_THAT(remedy_of(healthy(), {check}, Note, "0.000 1.000; -1.000"), HasSubstr("Kalibr"));
+  EXPECT_THAT(remedy_of(healthy(), {check}, Note, "0.000 1.000; -1.000"), HasSubstr("edged calib --target"));
 }
 
 TEST(Checks, NamesWhatIsMissingOrOfAnotherSize) {

@@ -102,14 +102,14 @@ TEST_F(FlightRecordTest, SpreadsTheDriftOfARoundOverItOnceThePlaceIsFoundAgain) 
 }
 
 TEST_F(FlightRecordTest, FitsAllLooksOfALongFlightThoughOnlySomeMoveTheKeyframes) {
-  constexpr double kFirst_s = 1.0, kStep_s = 0.5, kLong_s = 180.0;  // 1700 matched images
+  constexpr double kFirst_s = 1.0, kInterval_s = 0.5, kLong_s = 180.0;  // 1700 matched images
   restart(0.0, SE3());
   std::vector<double> made_at;
   double t = 0.0;
   for (; t < kLong_s; t += kTick_s) {
     fly(t, t + kTick_s, t < kFirst_s ? 0.0 : 0.001);
     const double now = t + kTick_s;
-    if (now < kOnceRound_s && now > kFirst_s + kStep_s * static_cast<double>(made_at.size()) - 1e-6) {
+    if (now < kOnceRound_s && now > kFirst_s + kInterval_s * static_cast<double>(made_at.size()) - 1e-6) {
       record_.add_keyframe({instant(now), T_O_B_});
       made_at.push_back(now);
     } else if (now > kOnceRound_s) {
