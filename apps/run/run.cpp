@@ -218,6 +218,7 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
     end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be used: " + truth_.problem,
                                             "correct it; edged eval TRUTH trajectory.tum compares later"});
   {
+    for (const auto& observer : observers_) observer->on_optimization();
     const auto timer = run_.timings.measure("final_trajectory");
     end.final_trajectory = odometry_.final_trajectory();
   }

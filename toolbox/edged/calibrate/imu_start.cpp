@@ -170,9 +170,8 @@ ImuStart align_imu(const TargetViews& camera, const std::vector<std::optional<SE
     if (const double r = correlation(turns, gyro, tried_s); r > best) best = r, offset_s = tried_s;
   if (best < kLeastCorrelation)
     throw InputError::format(
-        "camera {}: it turns differently from the gyro (correlation {:.2f}, {:.1f} is needed); are IMU and camera of "
-        "the "
-        "same recording, on one body, with clocks within {:.0f} s?",
+        "camera {}: turns differently from the gyro (correlation {:.2f} of {:.1f}): are they of one recording, on one "
+        "body? An IMU whose clock is more than {:.0f} s off needs --imu-time-offset auto",
         camera.name, best, kLeastCorrelation, kSearched_s);
   TurnFit fit;
   const double about_s = offset_s;
