@@ -100,7 +100,8 @@ std::optional<double> cameras_start_after_s(const SourceOptions& options);
 Finding cameras_start_later(double start_s);
 double later_start_s(double start_s);
 
-/// Not usable either if it is of a camera that the calibration lacks. After match_cameras().
+/// The ground truth of the recording; one of a camera that the calibration lacks is not usable. To be read after
+/// match_cameras().
 OwnTruth read_truth(const Source& source);
 
 /// Renames the cameras that the mode or the ground truth needs to their names in the recording, with a warning for each

@@ -58,11 +58,10 @@ void add_missing_cameras(const Recording& recording, std::vector<Finding>& findi
     const auto recorded = recorded_cameras(recording.dataset->info());
     if (std::ranges::find(recorded, modality, &RecordedCamera::modality) == recorded.end()) continue;
     if (std::ranges::find(calibrated, modality, &RigCamera::modality) != calibrated.end()) continue;
-    findings.push_back(
-        {Severity::Warning, fmt::format("the calibration has no camera of the {}", kind_name(modality)),
-         fmt::format("of a DAVIS, `edged calib FILE --camera {}=both --out head.yaml` gives both its lens; else "
-                     "run with --mode {}",
-                     recording.calibration->rig.cameras.front().name, kind_name(calibrated.front().modality))});
+    findings.push_back({Severity::Warning, fmt::format("the calibration has no camera of the {}", kind_name(modality)),
+                        fmt::format("{}; else run with --mode {}",
+                                    davis_remedy(recording.calibration->rig.cameras.front().name, "head.yaml"),
+                                    kind_name(calibrated.front().modality))});
   }
 }
 

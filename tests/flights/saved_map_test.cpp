@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A map that outlives its run: the next one, that begins elsewhere in the same room in other light, comes into its
-// frame; one in another room does not.
+// A map that outlives its run: the next one, that begins at another place of the same room in other light, comes into
+// its frame; one in another room does not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,10 +71,10 @@ class SavedMaps : public testing::Test {
   static void SetUpTestSuite() {
     first = new Flight(flight_of("room", 0.0, 14.0));
     dark = new Flight(flight_of("dark", 5.0, 14.0));
-    elsewhere = new Flight(flight_of("poster", 0.0, 8.0));
+    other_place = new Flight(flight_of("poster", 0.0, 8.0));
   }
-  static void TearDownTestSuite() { delete first, delete dark, delete elsewhere; }
-  inline static const Flight *first = nullptr, *dark = nullptr, *elsewhere = nullptr;
+  static void TearDownTestSuite() { delete first, delete dark, delete other_place; }
+  inline static const Flight *first = nullptr, *dark = nullptr, *other_place = nullptr;
 
   /// The run that makes the map, once a mode.
   static const MappedRun& before(Mode mode) {
@@ -101,11 +101,11 @@ TEST_F(SavedMaps, AreFoundAgainByTheNextRun) {
 
 TEST_F(SavedMaps, AreNotFoundWhereTheyAreNot) {
   for (const Mode mode : kAllModes) {
-    const MappedRun now = run_with(*elsewhere, mode, *before(mode).map);
+    const MappedRun now = run_with(*other_place, mode, *before(mode).map);
     EXPECT_FALSE(now.found) << mode_name(mode);
     EXPECT_FALSE(now.map) << "two places in one frame";
     // Nor do they bend it.
-    const MappedRun alone = run_with(*elsewhere, mode, "");
+    const MappedRun alone = run_with(*other_place, mode, "");
     ASSERT_EQ(now.poses.size(), alone.poses.size());
     EXPECT_EQ(now.poses.back().T.matrix(), alone.poses.back().T.matrix());
   }
@@ -123,7 +123,7 @@ TEST_F(SavedMaps, AreOnlyLocalizedIn) {
               << 1e3 * error << " mm off in the map's frame\n";
     EXPECT_LT(error, mode == Mode::Events ? 0.15 : 0.05);
 
-    const MappedRun other = run_with(*elsewhere, mode, *before(mode).map, only_localizing());
+    const MappedRun other = run_with(*other_place, mode, *before(mode).map, only_localizing());
     EXPECT_TRUE(other.poses.empty()) << mode_name(mode) << " in another room";
     EXPECT_EQ(other.map, before(mode).map);
   }

@@ -31,13 +31,17 @@ Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B) {
   return F;
 }
 
+Eigen::Matrix3d rotation_covariance(const SE3& T_M_B, double yaw_variance, double tilt_variance) {
+  const Eigen::Vector3d up_B = T_M_B.R().row(2);
+  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
+  return yaw_variance * along_up + tilt_variance * (Eigen::Matrix3d::Identity() - along_up);
+}
+
 Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt) {
   const double yaw = config.drift_yaw_deg * kDegree, tilt = config.drift_tilt_deg * kDegree;
-  const Eigen::Vector3d up_B = T_M_B.R().transpose() * Eigen::Vector3d::UnitZ();
-  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
   Matrix6d Q = Matrix6d::Zero();
   Q.diagonal().head<3>().setConstant(config.drift_m * config.drift_m * dt);
-  Q.bottomRightCorner<3, 3>() = dt * (yaw * yaw * along_up + tilt * tilt * (Eigen::Matrix3d::Identity() - along_up));
+  Q.bottomRightCorner<3, 3>() = dt * rotation_covariance(T_M_B, yaw * yaw, tilt * tilt);
   return Q;
 }
 

@@ -54,6 +54,9 @@ std::optional<LinearizedObservation> linearised(const MapObservation& observatio
 /// Jacobian from the error of T_M_A to that of T_M_A * T_A_B, with T_A_B known.
 Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B);
 
+/// Covariance of a rotation error in B with these variances about the vertical and about horizontal axes [rad^2].
+Eigen::Matrix3d rotation_covariance(const SE3& T_M_B, double yaw_variance, double tilt_variance);
+
 /// Covariance of the odometry's drift after dt [s].
 Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt);
 

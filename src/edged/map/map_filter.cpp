@@ -28,22 +28,17 @@ void MapFilter::restart(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
   T_O_B_ = T_O_B;
   T_M_B_ = T_M_O * T_O_B;
   t_ = updated_ = t;
-  const Eigen::Vector3d up_B = T_M_B_.R().transpose() * Eigen::Vector3d::UnitZ();
   P_.topRows<6>().setZero();
   P_.leftCols<6>().setZero();
   P_.topLeftCorner<3, 3>() = position_sigma * position_sigma * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d along_up = up_B * up_B.transpose();
-  P_.block<3, 3>(3, 3) =
-      yaw_sigma * yaw_sigma * along_up + tilt_sigma * tilt_sigma * (Eigen::Matrix3d::Identity() - along_up);
+  P_.block<3, 3>(3, 3) = rotation_covariance(T_M_B_, square(yaw_sigma), square(tilt_sigma));
   if (tilt_sigma > 0.0) tilt_sigma_ = tilt_sigma;
   updated_tilt_sigma_ = tilt_sigma_;
 }
 
 void MapFilter::set_tilt_sigma(double sigma) {
   sigma = std::max(sigma, kMapTuning.least_tilt_deg * kDegree);
-  const Eigen::Vector3d up_B = T_M_B_.R().row(2);
-  const double learned = std::max(square(tilt_sigma_) - square(sigma), 0.0);
-  P_.block<3, 3>(3, 3) += learned * (Eigen::Matrix3d::Identity() - up_B * up_B.transpose());
+  P_.block<3, 3>(3, 3) += rotation_covariance(T_M_B_, 0.0, std::max(square(tilt_sigma_) - square(sigma), 0.0));
   tilt_sigma_ = sigma;
 }
 

@@ -206,8 +206,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     session_.started_at_O = body_.now().T_O_B.translation();
     session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
     session_.uncertainty.scale_sigma.reset();
-    if (const std::optional<Matrix15d> P = session_.estimator.covariance())
-      session_.tilt_sigma = tilt_sigma(body_.now().T_O_B.R(), P->block<3, 3>(3, 3));
+    if (const std::optional<Matrix15d> P = session_.estimator.covariance()) take_tilt_sigma(*P);
     mapper_.restart(T_new_old, body_.now(), session_.tilt_sigma);
   } else if (body_.gyro_was_saturated() || body_.gap_s() > kPipelineTuning.max_gap_s) {
     mapper_.reset_uncertainty(body_.now(), body_.gap_s());
@@ -337,6 +336,10 @@ StateCovariance Localization::covariance_in_map(const Matrix15d& P) const {
           in_M(P.block<3, 3>(6, 6)) + by_yaw(now.v_O)};
 }
 
+void Localization::take_tilt_sigma(const Matrix15d& P) {
+  session_.tilt_sigma = tilt_sigma(session_.estimator.newest().T_O_B.R(), P.block<3, 3>(3, 3));
+}
+
 void Localization::update_covariance(Timestamp t) {
   if (session_.covariance && t - session_.covariance_at < kPipelineTuning.covariance_interval) return;
   const auto timer = timings_->measure("covariance");
@@ -352,7 +355,7 @@ void Localization::update_covariance(Timestamp t) {
       session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
     session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
     session_.covariance = covariance_in_map(*P);
-    session_.tilt_sigma = tilt_sigma(newest.T_O_B.R(), P->block<3, 3>(3, 3));
+    take_tilt_sigma(*P);
   }
 }
 

@@ -87,6 +87,7 @@ class Localization {
   std::string missing_localization() const;
   std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void update_covariance(Timestamp t);
+  void take_tilt_sigma(const Matrix15d& P);
   PlaceUncertainty::DeadReckoning dead_reckoning() const;
   PlaceUncertainty::DeadReckoning in_place() const;
   PlaceUncertainty::DeadReckoning contradicted() const;

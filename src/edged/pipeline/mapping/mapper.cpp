@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "edged/core/directions.hpp"
 #include "edged/core/statistics.hpp"
 #include "edged/map/tuning.hpp"
 #include "edged/pipeline/mapping/final_optimization.hpp"
@@ -146,10 +147,8 @@ bool Mapper::same_view(double focal_px) const {
   if (relocalizing_ || loaded_map_until_ || matches_.empty()) return false;
   const SE3 T_before_M = T_M_B_matched_.inverse(), T_B_M = filter_.T_M_B().inverse();
   std::vector<double> moved_px;
-  for (const MapMatch& match : matches_) {
-    const Eigen::Vector3d before = (T_before_M * match.p_W).normalized(), now = (T_B_M * match.p_W).normalized();
-    moved_px.push_back(focal_px * (now - before).norm());
-  }
+  for (const MapMatch& match : matches_)
+    moved_px.push_back(focal_px * angle_between(T_before_M * match.p_W, T_B_M * match.p_W));
   return median(std::move(moved_px)) < kMapTuning.new_view_px;
 }
 

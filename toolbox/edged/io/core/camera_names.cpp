@@ -25,13 +25,11 @@ std::string camera_list(const auto& cameras) {
   const std::string& wanted = events ? info.event_camera : info.frame_camera;
   const bool one_of_others = rig.cameras.size() == 1 && rig.cameras.front().modality != modality;
   const std::string remedy =
-      one_of_others
-          ? fmt::format("; of a DAVIS, `edged calib FILE --camera {}=both --out rig.yaml` gives both its lens",
-                        rig.cameras.front().name)
-          : fmt::format(
-                "; name the camera of the {} '{}' in the calibration (`edged calib FILE --camera "
-                "NAME={}:{} --out rig.yaml` renames it)",
-                kind_name(modality), wanted, kind_name(modality), wanted);
+      one_of_others ? "; " + davis_remedy(rig.cameras.front().name, "rig.yaml")
+                    : fmt::format(
+                          "; name the camera of the {} '{}' in the calibration (`edged calib FILE --camera "
+                          "NAME={}:{} --out rig.yaml` renames it)",
+                          kind_name(modality), wanted, kind_name(modality), wanted);
   throw InputError::format("{}: holds {}; rig '{}' has the cameras {}: {}{}, or run with --mode {}", info.name,
                            camera_list(recorded_cameras(info)), rig.name, camera_list(rig.cameras), reason, remedy,
                            events ? "frames" : "events");
@@ -132,6 +130,10 @@ NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<s
   for (std::size_t i = 0; i < streams.size(); ++i)
     named.said += fmt::format("{} {} is '{}'", i == 0 ? "" : ",", streams[i], named.names[i]);
   return named;
+}
+
+std::string davis_remedy(std::string_view camera, std::string_view file) {
+  return fmt::format("of a DAVIS, `edged calib FILE --camera {}=both --out {}` gives both its lens", camera, file);
 }
 
 std::string match_camera(Rig& rig, const DatasetInfo& info, Modality modality) {

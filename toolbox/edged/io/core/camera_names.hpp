@@ -14,6 +14,9 @@
 
 namespace edged {
 
+/// The remedy where a calibration has a camera of one kind alone, but the recording is of a DAVIS; file: to be written.
+std::string davis_remedy(std::string_view camera, std::string_view file);
+
 /// Assigns the camera of the recording of this modality to a camera of the rig: the one of the same name, else the only
 /// one of the modality. Renames that camera to the name in the recording, which ground truth and output frames use, so
 /// that Rig::find returns it. Returns the assumption in one line, empty if the names agree. Throws InputError, with the
