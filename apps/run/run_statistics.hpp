@@ -59,7 +59,7 @@ class RunStatistics {
   };
   Overload overload() const;
   /// Relative standard deviation of the way travelled, see ScaleUncertainty; nothing if it is short.
-  std::optional<double> scale_sigma() const { return scale_.sigma(kShortestPath_m); }
+  std::optional<double> scale_sigma() const { return scale_.sigma(); }
   /// Sigma of roll and pitch in the last packet, while Initializing; nothing without an attitude.
   std::optional<double> tilt_sigma_deg() const { return tilt_sigma_deg_; }
   /// The last estimate [m/s^2].

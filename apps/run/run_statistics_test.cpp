@@ -95,8 +95,8 @@ TEST(RunStatistics, KnowHowCertainTheWayIs) {
   step.state.v_W = {0.2, 0.0, 0.0};
   for (int i = 0; i < 40; ++i) {
     step.t = at(0.1 * i);
-    if (i == 20) {
-      EXPECT_FALSE(statistics.scale_sigma()) << "0.4 m are too short";
+    if (i == 8) {
+      EXPECT_FALSE(statistics.scale_sigma()) << "0.14 m are too short";
     }
     statistics.add(step);
   }

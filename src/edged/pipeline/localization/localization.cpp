@@ -353,7 +353,7 @@ void Localization::update_covariance(Timestamp t) {
         0.0, std::sqrt(P->diagonal().segment<3>(6).maxCoeff()) - kPipelineTuning.velocity_share * newest.v_O.norm());
     if (session_.uncertainty.velocity_sigma < config_.status.max_velocity_sigma)  // else unknown, whatever the scale
       session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
-    session_.uncertainty.scale_sigma = session_.scale.sigma(kPipelineTuning.least_travel_m);
+    session_.uncertainty.scale_sigma = session_.scale.sigma();
     session_.covariance = covariance_in_map(*P);
     take_tilt_sigma(*P);
   }

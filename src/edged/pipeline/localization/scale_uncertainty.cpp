@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edged/pipeline/tuning.hpp"
+
 namespace edged {
 
 void ScaleUncertainty::add(Timestamp t, const Eigen::Vector3d& velocity, const Eigen::Matrix3d& covariance) {
@@ -17,8 +19,8 @@ void ScaleUncertainty::add(Timestamp t, const Eigen::Vector3d& velocity, const E
   squares_ = kept * squares_ + velocity.squaredNorm() * dt;
 }
 
-std::optional<double> ScaleUncertainty::sigma(double least_m) const {
-  return travelled_m_ < least_m || squares_ <= 0.0 ? std::nullopt : std::optional(uncertain_ / squares_);
+std::optional<double> ScaleUncertainty::sigma() const {
+  return travelled_m_ < kPipelineTuning.least_travel_m || squares_ <= 0.0 ? std::nullopt : std::optional(uncertain_ / squares_);
 }
 
 }  // namespace edged

@@ -21,8 +21,8 @@ class ScaleUncertainty {
   /// The velocity [m/s] and its covariance at t, in one frame. In time order; gaps count as little time.
   void add(Timestamp t, const Eigen::Vector3d& velocity, const Eigen::Matrix3d& covariance);
 
-  /// Nothing before the body has travelled least_m: of a shorter way no share means anything.
-  std::optional<double> sigma(double least_m) const;
+  /// Nothing before the body has travelled kPipelineTuning.least_travel_m: of a shorter way no share means anything.
+  std::optional<double> sigma() const;
 
  private:
   double memory_s_;
