@@ -70,10 +70,12 @@ Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
   for (const std::string& word : command->remaining()) {
     const bool flag = word.starts_with('-');
     const std::vector<std::string> known = flag ? flags_of(*command) : commands_of(*command);
+    if (!flag && word.find(":=") != std::string::npos && command->get_option_no_throw("--remap"))
+      return {kExitUsage, "usage", fmt::format("'{}': write `-r {}` for another topic; {}", word, word, see)};
     if (known.empty()) continue;
     const std::string name = word.substr(0, word.find('='));
-    return {kExitUsage, "usage",
-            fmt::format("unknown {} '{}'{}; {}", flag ? "flag" : "command", name, did_you_mean(known, name), see)};
+    const std::string hint = name == "slam" ? "; did you mean 'run'?" : did_you_mean(known, name);
+    return {kExitUsage, "usage", fmt::format("unknown {} '{}'{}; {}", flag ? "flag" : "command", name, hint, see)};
   }
   return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
 }

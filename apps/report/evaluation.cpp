@@ -45,7 +45,7 @@ std::string window_text(const TimeWindow& window) {
 void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
   CLI::Option* align =
       command.add_option("--align", options.align, "Alignment: none, yaw (position and yaw), se3, sim3")
-          ->check(CLI::IsMember({"none", "yaw", "se3", "sim3"}))
+          ->transform(CLI::IsMember({"none", "yaw", "se3", "sim3"}, CLI::ignore_case))
           ->capture_default_str();
   CLI::Option* window =
       command.add_option("--window", options.window, "Align on these seconds only: BEGIN END [s]")->expected(2);
@@ -56,7 +56,7 @@ void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
       .add_option("--protocol", options.protocol_name,
                   "P1: SE3 on seconds 3-8 (Ultimate SLAM). P2: SE3 on the first 5 s (PL-EVIO, EVI-SAM). "
                   "P3: SE3 on all (ESVIO). P4: Sim3 on all (DEVO)")
-      ->check(CLI::IsMember({"P1", "P2", "P3", "P4"}))
+      ->transform(CLI::IsMember({"P1", "P2", "P3", "P4"}, CLI::ignore_case))
       ->excludes(align)
       ->excludes(window)
       ->excludes(first);

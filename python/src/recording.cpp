@@ -82,7 +82,10 @@ SensorFiles given_files(const py::kwargs& files) {
   for (const auto& [key, file] : files) {
     const std::string sensor = py::str(key);
     if (sensor != "imu" && !find_external_sensor(sensor))
-      throw py::type_error(fmt::format("open_recording() got an unexpected keyword argument '{}'", sensor));
+      throw py::type_error(fmt::format(
+          "open_recording() got an unexpected keyword argument '{}'; there are rig (a calibration), topics, "
+          "geometry, time_unit, begin_s, end_s, cameras, and files of imu, height, velocity",
+          sensor));
     if (!file.is_none()) given[sensor] = py::str(file);
   }
   return given;

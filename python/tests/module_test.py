@@ -90,7 +90,7 @@ def test_a_stereo_recording_is_run_as_by_the_program(pair, tmp_path):
 
 
 def test_an_imu_may_come_from_another_file(pair, tmp_path):
-    with pytest.raises(TypeError, match="unexpected keyword argument 'imux'"):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'imux'; there are rig "):
         edged.open_recording(pair, imux="imu.txt")  # type: ignore[call-arg]
     lines = (pair / "imu.txt").read_text().splitlines(keepends=True)
     (tmp_path / "half.txt").write_text("".join(lines[::2]))

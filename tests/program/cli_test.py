@@ -55,8 +55,15 @@ class CommandLine(WithFolder):
         self.assert_refused(edged("run", "x", "--mdoe", "fused"), "unknown flag '--mdoe'", "'--mode'", "`edged run --help`", code=2)
         self.assert_refused(edged("run", "x", "--mdoe=fused"), "unknown flag '--mdoe'", "'--mode'", code=2)
         self.assert_refused(edged("calibrate"), "did you mean 'calib'?", code=2)
+        self.assert_refused(edged("slam"), "did you mean 'run'?", code=2)
         self.assertNotIn("did you mean", edged("hover").stderr)
         self.assertNotIn("did you mean", edged("config", "--what").stderr)
+
+    def test_a_topic_without_its_flag_is_shown_as_it_is_written(self):
+        if "Cyclone DDS was missing" in edged("--help").stdout:
+            self.skipTest("EDGED_ROS2 is off")
+        for command in ("ros2", "play"):
+            self.assert_refused(edged(command, "rec", "events:=/x"), "write `-r events:=/x`", f"`edged {command} --help`", code=2)
 
     def test_with_json_an_error_is_json_too(self):
         for args, code, kind in ((("run", self.folder / "nothing", "--json"), 3, "input"),
@@ -233,9 +240,9 @@ class Eval(WithFolder):
         self.assertEqual(result["pairs"], 200)
 
     def test_protocols_and_windows_are_applied(self):
-        self.assertEqual(json.loads(edged("eval", self.truth, self.truth, "--protocol", "P1", "--json").stdout)["window_s"],
+        self.assertEqual(json.loads(edged("eval", self.truth, self.truth, "--protocol", "p1", "--json").stdout)["window_s"],
                          [3.0, 8.0])
-        custom = edged("eval", self.truth, self.truth, "--align", "yaw", "--first", "5", "--json")
+        custom = edged("eval", self.truth, self.truth, "--align", "Yaw", "--first", "5", "--json")
         self.assertEqual(json.loads(custom.stdout)["alignment"], "position+yaw")
         table = edged("eval", self.truth, self.truth).stdout
         self.assertRegex(table, r"ATE position +0\.0000 .* mm\n")

@@ -135,6 +135,16 @@ class Installed(unittest.TestCase):
         with self.assertRaisesRegex(AssertionError, r"is where edged is built, not\s+installed"):
             configure(os.environ["EDGED_BUILD"])
 
+    def test_a_toolbox_that_was_not_asked_for_is_explained(self):
+        project = self.folder / "without_component"
+        project.mkdir()
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.22)\nproject(p LANGUAGES CXX)\nfind_package(edged REQUIRED)\n"
+            "add_library(p INTERFACE)\ntarget_link_libraries(p INTERFACE edged::edged)\n")
+        told = call(os.environ["CMAKE"], "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                    f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", env=self.environment)
+        self.assertIn("edged::toolbox needs find_package(edged COMPONENTS toolbox)", told)
+
 
 if __name__ == "__main__":
     unittest.main()
