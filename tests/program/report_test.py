@@ -198,6 +198,9 @@ class Page(WithFlight):
             while not file.exists() and time.monotonic() < until:
                 time.sleep(0.1)
             self.assertEqual(file.read_bytes(), (self.run_folder / name).read_bytes())
+        self.assertEqual(browser.value("downloads({trajectories: {'long.tum': null}}).textContent"),
+                         "Save: long.tum (in the run folder: too large for this page)")
+        self.assertEqual(browser.value("[tickText(400, 100), tickText(4000, 1000)]"), ["400", "4k"])
         self.assertEqual(browser.complaints, [])
 
     def test_dense_points_and_voxels_are_shown_as_the_boxes_say(self):

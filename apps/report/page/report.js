@@ -96,7 +96,7 @@ function downloads(run) {
   if (!names.length) return null;
   return make('p', {class: 'downloads'}, 'Save: ', ...names.flatMap((name, k) => {
     const text = run.trajectories[name], file = new Blob([text || ''], {type: 'text/plain'});
-    const link = text === null ? name + ' is too large for this page; it is in the run folder'
+    const link = text === null ? name + ' (in the run folder: too large for this page)'
       : make('a', {href: URL.createObjectURL(file), download: run.name + '-' + name}, name);
     return k ? [', ', link] : [link];
   }));

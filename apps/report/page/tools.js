@@ -19,7 +19,7 @@ function niceStep(extent, count) {
 /** A tick's text: as many decimals as its step needs, with k and M for large ones. */
 function tickText(value, step) {
   if (Math.abs(value) < step * 1e-6) return '0';
-  const [unit, name] = Math.abs(step) >= 1e5 ? [1e6, 'M'] : Math.abs(step) >= 100 ? [1e3, 'k'] : [1, ''];
+  const [unit, name] = Math.abs(step) >= 1e5 ? [1e6, 'M'] : Math.abs(step) >= 1000 ? [1e3, 'k'] : [1, ''];
   const decimals = Math.max(0, Math.min(6, -Math.floor(Math.log10(step / unit) + 1e-9)));
   return (value / unit).toFixed(decimals) + name;
 }

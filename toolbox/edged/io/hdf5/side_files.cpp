@@ -131,7 +131,7 @@ const std::vector<SideNames>& side_names() {
       // SEQUENCE/events/left/events.h5; both sides have the same stamps, the middle of the exposure
       {.set = "dsec",
        .layout = "dsec",
-       .witness = {"rectify_map.h5"},
+       .witness = {"rectify_map.h5", "rectify_maps.h5"},
        .sensor = {640, 480},
        .roots = {".", "..", "../.."},
        .stamps = {"images/timestamps.txt", "image_timestamps.txt", "images_timestamps.txt"},

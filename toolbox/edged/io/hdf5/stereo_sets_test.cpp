@@ -60,7 +60,8 @@ TEST(StereoSets, DsecHasAFolderForEachSide) {
       const auto place = folder.path() / (zipped_names ? "seq_events_" + side : "events/" + side);
       std::filesystem::create_directories(place);
       write_events(place / "events.h5", events_of_side(side == "right"));
-      H5Maker(place / "rectify_map.h5").array("/rectify_map", std::vector<float>(8), {2, 2, 2});
+      H5Maker(place / (zipped_names ? "rectify_maps.h5" : "rectify_map.h5"))
+          .array("/rectify_map", std::vector<float>(8), {2, 2, 2});
       put_images(folder, "images/" + side + "/distorted", side == "right");
     }
     folder.write("images/timestamps.txt", "5000\n15000\n");

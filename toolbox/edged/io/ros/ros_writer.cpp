@@ -60,7 +60,12 @@ class RosWriter final : public RecordingWriter {
 
  private:
   void check(Timestamp t) const {
-    if (t < Timestamp() || t > latest_stamp(sink_->wire()))
+    if (t < Timestamp())
+      throw InputError::format(
+          "{}: ROS messages hold no stamp before zero, as {} s: add --from {:.3f}, which leaves out "
+          "what is earlier",
+          name_, format_seconds(t), 0.001 - to_seconds(t));
+    if (t > latest_stamp(sink_->wire()))
       throw InputError::format("{}: ROS messages cannot hold the stamp {} s; shift the recording's clock", name_,
                                format_seconds(t));
   }
