@@ -151,7 +151,8 @@ void judge_against_truth(const RunSummary& s, std::vector<Finding>& out) {
     out.push_back(
         {gross ? Severity::Error : Severity::Warning,
          fmt::format("ground truth: the estimate is outside 3 sigma of its covariance for {:.1f} s", c.silent_s()),
-         "its errors are larger than its covariance: see `error since the start` in report.html"});
+         "its errors are larger than its covariance: see `error since the start` in report.html; or the true poses are "
+         "of another sensor: run with `--frame SENSOR`, then `edged eval`"});
   }
 }
 

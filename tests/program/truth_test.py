@@ -144,6 +144,7 @@ class Truth(WithFlight):
         self.assertRegex(metrics["verdict"], r"the result is not to be trusted: ground truth: the estimate is outside 3 sigma")
         self.assertEqual(self.data_of(out / "report.html")["metrics"]["verdict"], metrics["verdict"])
         self.assertIn("outside 3 sigma", result.stdout)
+        self.assertIn("of another sensor: run with `--frame SENSOR`", re.sub(r"\s+", " ", result.stdout))
 
 
 if __name__ == "__main__":
