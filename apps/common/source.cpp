@@ -190,7 +190,10 @@ Source calibrated(const SourceOptions& options, Recording recording) {
         "{}: holds intrinsics only; the pose of the camera to the IMU and the time offset are missing: give --rig NAME "
         "or --calib FILE, which {}",
         options.calib.empty() ? options.recording : options.calib.string(), kMakesCalibration);
-  if (!recording.calibration->has_imu_noise) spdlog::warn("the calibration holds no IMU noise; defaults are used");
+  if (!recording.calibration->has_imu_noise)
+    spdlog::warn(
+        "the calibration holds no IMU noise; defaults are used: `edged calib FILE --imu imu.yaml --out head.yaml` adds "
+        "it");
   std::optional<int> seed;
   if (const std::optional<SimulatorConfig> config = simulator_config(options)) seed = config->seed;
   return {std::move(recording.dataset), std::move(*recording.calibration), seed};

@@ -103,6 +103,8 @@ class StereoRecordings(WithFlight):
         self.assertEqual({name: camera["stream"] for name, camera in found["cameras"].items()},
                          {"cam0": "/dvs2/events", "cam1": "/dvs/events", "cam2": "/camera/image_raw",
                           "cam3": "/camera2/image_raw"})
+        run = edged("run", bag, "--calib", calib, "--to", 0.2, "--out", self.folder / "chain", "--quiet")
+        self.assertIn("no IMU noise; defaults are used: `edged calib FILE --imu imu.yaml --out head.yaml` adds it", run.stderr)
         calib.write_text(camchain.replace("/dvs2/events", "/dvs/events"))
         self.assert_refused(edged("info", bag, "--calib", calib, "--quiet"), "/dvs/events", "two cameras, cam0 and cam1")
         self.assert_refused(edged("info", bag, "--quiet", "--topic", "events=/dvs/events", "--topic", "events=/dvs2/events"),
