@@ -15,40 +15,35 @@
 namespace edged {
 namespace {
 
-constexpr double kSigmas = 6.0;  // correlated errors of corners make sigmas too small
-
 void check_shift(const CameraCheck& check, Findings& out) {
   // In low light, events are delayed by milliseconds, which is no error of the clock.
-  constexpr double kDetermined_ms = 2.5;
+  constexpr double kDetermined_ms = 5.0;
   constexpr double kMostCorrected_ms = 32.0;  // by a run: 4 sigma of estimator.calibration.time_offset_sigma_ms
-  // Where the offset is less certain: moving objects and moving light cause errors that are correlated over a second,
-  // up to 9 sigmas.
-  constexpr double kSigmasOfVague = 10.0;
+  constexpr double kCertain = 4.0;            // exceeded by chance in one of 600
   const bool events = check.camera.modality == Modality::Events;  // under vibration their images gave 37 ms too much
   const double least_ms = events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;
   const double shift = 1e3 * to_seconds(found.time_offset), given = 1e3 * to_seconds(check.camera.time_offset);
   const double sigma = 1e3 * found.time_sigma_s;
-  const bool is_vague = sigma > kDetermined_ms;
-  const double sigmas = is_vague ? kSigmasOfVague : kSigmas;
   const std::string text = fmt::format(
       "camera {}: t_imu = t_cam {:+.1f} ms +- {:.1f} ms from its rotation rate, {:+.1f} ms in the calibration",
       check.camera.name, shift, sigma, given);
   const std::string remedy = fmt::format("set time_offset of this camera to {:.4f}", to_seconds(found.time_offset));
   const double off = std::abs(shift - given);
-  const bool wrong = off > std::max(least_ms, sigmas * sigma);
+  const bool differs = off > least_ms;
+  const bool wrong = differs && found.time_t > kCertain;
   if (found.at_bound)
     out.warn(fmt::format(
                  "camera {}: {:.0f} ms or more off the calibration's t_imu = t_cam {:+.1f} ms, from its rotation rate",
                  check.camera.name, 1e3 * to_seconds(kMostShift), given),
              "check the clocks of camera and IMU");
-  else if (wrong && off > kMostCorrected_ms && !is_vague && !events)
+  else if (wrong && off > kMostCorrected_ms && !events)
     out.error(text, remedy);
   else if (wrong)
     out.warn(text, remedy);
-  else if (sigma > kDetermined_ms)
+  else if (differs || sigma > kDetermined_ms)
     out.note(fmt::format("camera {}: its time offset cannot be determined from its rotation rate (+- {:.1f} ms)",
-                         check.camera.name, sigma));
+                         check.camera.name, std::max(sigma, off)));
   else
     out.good(text);
 }
@@ -157,6 +152,7 @@ void check_scale(const CameraCheck& check, Findings& out) {
 /// events within 8 %, and up to 33 % where 12 % or more stay unexplained.)
 void check_gyro_scale(const CameraCheck& check, Findings& out) {
   constexpr double kLeast = 0.04, kUnexplained = 0.1, kDetermined = 0.015, kEventImages = 0.05;
+  constexpr double kSigmas = 6.0;  // correlated errors of corners make sigmas too small
   const GyroAgreement& found = *check.agreement;
   if (found.scale_sigma <= 0.0 || found.scale_unexplained > kUnexplained) return;
   const double common = check.camera.modality == Modality::Events ? kEventImages : found.scale_unexplained / 10;

@@ -126,6 +126,9 @@ TEST(Checks, NamesACalibrationThatContradictsTheGyro) {
   CameraCheck check = agreeing();
   check.agreement->time_offset = std::chrono::milliseconds(12);
   EXPECT_THAT(remedy_of(healthy(), {check}, Warning, "+12.0 ms"), HasSubstr("0.0120"));
+  check.agreement->time_t = 2.0;
+  EXPECT_EQ(remedy_of(healthy(), {check}, Note, "offset cannot be determined from its rotation rate (+- 12.0 ms)"), "")
+      << "the parts of the recording do not agree on it";
   check = agreeing();
   check.agreement->R_B_C = so3::exp({0, 0, 1.5}).toRotationMatrix();
   EXPECT_THAT(remedy_of(healthy(), {check}, Error, "contradicts the gyro by 85.9 deg +- 0.1 deg"),

@@ -31,8 +31,8 @@ inline RecordingStatistics healthy() {
 
 inline CameraCheck agreeing() {
   GyroAgreement found;
-  found.turns = 200, found.turning = std::chrono::seconds(10), found.unexplained = 0.1, found.time_sigma_s = 1e-4,
-  found.rotation_sigma = 2e-3;
+  found.turns = 200, found.turning = std::chrono::seconds(10), found.unexplained = 0.1, found.rotation_sigma = 2e-3;
+  found.time_sigma_s = 1e-4, found.time_t = 20.0;
   found.rotation_covariance = 4e-6 * Eigen::Matrix3d::Identity();
   return {RigCamera{"cam", Modality::Frames, {}, {}, Duration(0)}, true, found};
 }

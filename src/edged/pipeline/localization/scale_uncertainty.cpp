@@ -20,7 +20,8 @@ void ScaleUncertainty::add(Timestamp t, const Eigen::Vector3d& velocity, const E
 }
 
 std::optional<double> ScaleUncertainty::sigma() const {
-  return travelled_m_ < kPipelineTuning.least_travel_m || squares_ <= 0.0 ? std::nullopt : std::optional(uncertain_ / squares_);
+  return travelled_m_ < kPipelineTuning.least_travel_m || squares_ <= 0.0 ? std::nullopt
+                                                                          : std::optional(uncertain_ / squares_);
 }
 
 }  // namespace edged

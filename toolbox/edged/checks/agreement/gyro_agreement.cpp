@@ -144,11 +144,11 @@ Eigen::Matrix3d scatter_of(const Pairs& pairs, const Eigen::Matrix3d& R_B_C) {
 }
 
 /// A refinement by the corners of the rotations, if given.
-void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreement& agreement) {
+void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, Duration expected, GyroAgreement& agreement) {
   // With a wrong unit of the gyro a better rotation is useless.
   const double scale = agreement.gyro_scale;
   if (agreement.unexplained < kUnlike && (scale < 0.67 || scale > 1.5)) return;
-  const auto fit = fit_rays(turns, gyro, {agreement.R_B_C, to_seconds(agreement.time_offset)});
+  const auto fit = fit_rays(turns, gyro, {agreement.R_B_C, to_seconds(agreement.time_offset)}, to_seconds(expected));
   if (!fit) return;
   agreement.R_B_C = fit->mount.R_B_C;
   agreement.time_offset = duration_from_seconds(fit->mount.shift_s);
@@ -158,6 +158,7 @@ void use_rays(std::span<const Turn> turns, const GyroIntegral& gyro, GyroAgreeme
   agreement.accel = compare_with_accel(turns, gyro, fit->mount);
   agreement.unexplained = fit->unexplained;
   agreement.time_sigma_s = fit->shift_sigma_s;
+  agreement.time_t = fit->shift_t;
   agreement.rotation_covariance = fit->rotation_covariance;
   agreement.rotation_sigma = std::sqrt(fit->rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
 }
@@ -197,7 +198,7 @@ std::optional<GyroAgreement> compare_as_given(std::span<const Turn> turns, const
   }
   agreement.rotation_covariance += scatter_of(pairs, agreement.R_B_C);
   agreement.rotation_sigma = std::sqrt(agreement.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
-  use_rays(turns, gyro, agreement);
+  use_rays(turns, gyro, expected, agreement);
   agreement.common_error = common_error_of(agreement);
   agreement.turning = turning_time(turns);
   agreement.at_bound = std::chrono::abs(agreement.time_offset - expected) > most - kShiftStep;

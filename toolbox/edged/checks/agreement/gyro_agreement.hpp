@@ -18,6 +18,7 @@ struct GyroAgreement {
   double unexplained = 1.0;  ///< share of the rotation; above about 0.5 the other results are unreliable
   Duration time_offset{0};   ///< t_imu = t_cam + time_offset
   double time_sigma_s = 0.0;
+  double time_t = 0.0;    ///< Student's t of the tenths of the recording that time_offset fits better than the expected
   bool at_bound = false;  ///< outside the searched range: time_offset is no estimate
   Eigen::Matrix3d R_B_C = Eigen::Matrix3d::Identity();
   double rotation_sigma = 0.0;  ///< sigma of the least certain axis [rad]; large if it rotated about one axis only

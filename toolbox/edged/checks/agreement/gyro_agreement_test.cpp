@@ -132,6 +132,10 @@ TEST(GyroAgreement, IsFarBetterFromAllCornersTogetherAndKnowsHowGoodItIs) {
   EXPECT_LT(error(*with).dot(with->rotation_covariance.inverse() * error(*with)), 16.0);
   EXPECT_LT(with->rotation_sigma, 0.005);
   EXPECT_NEAR(to_seconds(with->time_offset), 0.01, 5e-4);
+  EXPECT_NEAR(to_seconds(with->time_offset), 0.01, 3 * with->time_sigma_s);
+  EXPECT_GT(with->time_t, 6.0) << "all parts prefer it to an offset of 0";
+  EXPECT_LT(compare_with_gyro(turns, biased, std::chrono::milliseconds(10))->time_t, 4.0)
+      << "none contradicts a right one";
   EXPECT_LT(with->unexplained, 0.2);
   for (Turn& turn : turns) turn.rays.clear();
   EXPECT_GT(compare_with_gyro(turns, biased, Duration(0))->rotation_sigma, 2 * with->rotation_sigma);

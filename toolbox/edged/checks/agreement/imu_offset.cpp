@@ -18,7 +18,7 @@ constexpr Duration::rep kAllPieces = 3, kOneInPieces = 3;  // at first all piece
 constexpr std::size_t kMostWithRays = 16;                  // pieces that keep the rays of their turns, by memory
 constexpr double kLikeGyro = 0.5;           // most of the rotation in a piece that the gyro leaves unexplained
 constexpr double kLikeScale = 0.4;          // of the logarithm of the ratio of both rates: by chance it may be any
-constexpr double kMostPieceSigma_s = 0.01;  // of a right offset at most 6 ms, by few events; of a wrong one 13 ms
+constexpr double kMostPieceSigma_s = 0.02;  // a shift of 64 ms is refuted
 constexpr double kLeastPieceSigma_s =
     3e-4;                           // of the offset in a piece: turns share errors that their scatter does not show
 constexpr double kSureDrift = 3.0;  // sigmas from none

@@ -24,6 +24,7 @@ struct RayFit {
   Eigen::Matrix3d rotation_covariance =
       Eigen::Matrix3d::Zero();  ///< covariance of the error in R_B_C * Exp(error) [rad^2]
   double shift_sigma_s = 0.0;
+  double shift_t = 0.0;  ///< Student's t of the tenths of the recording that mount.shift_s fits better than `given_s`
   double unexplained = 1.0;  ///< share of the cost that independent rotations explain, but those of the gyro do not
   double scale_sigma = 0.0;  ///< sigma of mount.gyro_scale
   double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
@@ -36,7 +37,8 @@ Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R
 /// The mount with the smallest epipolar error of all corners, for any translation in each rotation (Gauss-Newton on the
 /// cost of Kneip and Lynen, ICCV 2013, summed over all rotations). With a narrow view or a flat scene, one pair of
 /// images hardly separates rotation from translation, but the common parameters of all pairs are well determined.
-/// Nothing without corners, or with too little rotation of the gyro.
-std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start);
+/// given_s: the shift of the calibration. Nothing without corners, or with too little rotation of the gyro.
+std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& gyro, const GyroMount& start,
+                               double given_s);
 
 }  // namespace edged
