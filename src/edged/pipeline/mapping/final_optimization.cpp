@@ -70,6 +70,7 @@ class StartOptimization {
     MatchedImage image;
     MatchedKeyframe keyframe;
     MapObservation observation;
+    std::size_t part = 0;  ///< of the states, as long as a track may be
   };
 
   std::size_t nearest(Timestamp t) const {
@@ -99,7 +100,10 @@ class StartOptimization {
         } else {
           continue;
         }
-        matches_.push_back({{start_.states[at].id, T_A_B, seen.T_B_C[observation.camera]}, keyframe, observation});
+        matches_.push_back({{start_.states[at].id, T_A_B, seen.T_B_C[observation.camera]},
+                            keyframe,
+                            observation,
+                            at / kSolverTuning.band_states});
       }
     }
   }
@@ -122,18 +126,19 @@ class StartOptimization {
     }
   }
 
-  /// The errors of a map point's depth and patch are the same in all its matches: together they count as one.
+  /// The errors of a map point's depth and patch are the same in all its matches: those within the length of a track
+  /// count as one; all of a run as one would let a long one drift from its map.
   void make_factors() {
     std::map<StateId, SE3> T_O_A;
     for (const StartRecord::State& kept : start_.states) T_O_A.emplace(kept.id, kept.state.T_O_B());
-    std::map<PointKey, int> times;
-    for (const Match& match : matches_) ++times[point_of(match.observation)];
-    for (const auto& [image, keyframe, observation] : matches_) {
+    std::map<std::pair<PointKey, std::size_t>, int> times;
+    for (const Match& match : matches_) ++times[{point_of(match.observation), match.part}];
+    for (const auto& [image, keyframe, observation, part] : matches_) {
       const SE3 T_O_K = keyframe.state ? T_O_A.at(*keyframe.state) : keyframe.T_O_K;
       const auto row = linearised(observation, T_O_A.at(image.state) * image.T_A_B, T_O_K, image.T_B_C);
       if (!row) continue;
       start_.factors.push_back(std::make_shared<MapMatchFactor>(image, keyframe, observation, inverse_root(row->R),
-                                                                1.0 / times.at(point_of(observation))));
+                                                                1.0 / times.at({point_of(observation), part})));
     }
     if (outside_) free_gauge();
   }
