@@ -42,34 +42,14 @@ class SimulatedTruth final : public TrackTruth {
       const SE3 T_W_C = *this->T_W_C(seen.camera, t);
       const Rendering& picture = renderer.render(T_W_C, to_seconds(t - offset_));
       for (Trail* trail : trails) {
-        const double w = inverse_depth(picture, seen.image, *trail);
+        const auto [w, at_edge] = scene_point(picture, seen.image, trail->observations.front().pixel);
+        trail->at_edge = at_edge;
         if (w > 0.0) trail->p_W = T_W_C * (trail->observations.front().point.homogeneous() / w);
       }
     }
   }
 
  private:
-  /// At the first observation, between its four pixels: over a plane it is linear. At an edge that of the nearer side,
-  /// which owns it.
-  static double inverse_depth(const Rendering& picture, const CameraModel& image, Trail& trail) {
-    const Eigen::Vector2d pixel = trail.observations.front().pixel;
-    const int x_0 = static_cast<int>(std::floor(pixel.x())), y_0 = static_cast<int>(std::floor(pixel.y()));
-    const auto at = [&](int x, int y) {
-      x = std::clamp(x, 0, image.width() - 1), y = std::clamp(y, 0, image.height() - 1);
-      return picture.inverse_depth[static_cast<std::size_t>(y * image.width() + x)];
-    };
-    float nearest = 0.0F, farthest = std::numeric_limits<float>::max();
-    for (int y = y_0 - kEdgeReach_px + 1; y <= y_0 + kEdgeReach_px; ++y) {
-      for (int x = x_0 - kEdgeReach_px + 1; x <= x_0 + kEdgeReach_px; ++x)
-        nearest = std::max(nearest, at(x, y)), farthest = std::min(farthest, at(x, y));
-    }
-    trail.at_edge = nearest > kEdgeStep * farthest;
-    if (trail.at_edge) return nearest;
-    const double fx = pixel.x() - x_0, fy = pixel.y() - y_0;
-    return (1.0 - fy) * ((1.0 - fx) * at(x_0, y_0) + fx * at(x_0 + 1, y_0)) +
-           fy * ((1.0 - fx) * at(x_0, y_0 + 1) + fx * at(x_0 + 1, y_0 + 1));
-  }
-
   Simulator simulator_;
   Duration offset_;
 };
@@ -107,6 +87,24 @@ class RecordedTruth final : public TrackTruth {
 };
 
 }  // namespace
+
+ScenePoint scene_point(const Rendering& picture, const CameraModel& image, const Eigen::Vector2d& pixel) {
+  const int x_0 = static_cast<int>(std::floor(pixel.x())), y_0 = static_cast<int>(std::floor(pixel.y()));
+  const auto at = [&](int x, int y) {
+    x = std::clamp(x, 0, image.width() - 1), y = std::clamp(y, 0, image.height() - 1);
+    return picture.inverse_depth[static_cast<std::size_t>(y * image.width() + x)];
+  };
+  float nearest = 0.0F, farthest = std::numeric_limits<float>::max();
+  for (int y = y_0 - kEdgeReach_px + 1; y <= y_0 + kEdgeReach_px; ++y) {
+    for (int x = x_0 - kEdgeReach_px + 1; x <= x_0 + kEdgeReach_px; ++x)
+      nearest = std::max(nearest, at(x, y)), farthest = std::min(farthest, at(x, y));
+  }
+  if (nearest > kEdgeStep * farthest) return {nearest, true};
+  const double fx = pixel.x() - x_0, fy = pixel.y() - y_0;
+  return {(1.0 - fy) * ((1.0 - fx) * at(x_0, y_0) + fx * at(x_0 + 1, y_0)) +
+              fy * ((1.0 - fx) * at(x_0, y_0 + 1) + fx * at(x_0 + 1, y_0 + 1)),
+          false};
+}
 
 std::unique_ptr<TrackTruth> simulated_truth(const SimulatorConfig& config) {
   return std::make_unique<SimulatedTruth>(config);

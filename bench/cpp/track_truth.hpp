@@ -10,6 +10,7 @@
 
 #include "edged/dataset.hpp"
 #include "edged/rig.hpp"
+#include "edged/sim/sensors/renderer.hpp"
 #include "edged/sim/simulator.hpp"
 #include "edged/state.hpp"
 
@@ -37,6 +38,14 @@ struct CameraTrails {
   CameraModel image;
   std::vector<Trail> trails;
 };
+
+/// What a picture shows between its pixels: over a plane inverse depth is linear. At an edge of depth that of the
+/// nearer side, which owns it.
+struct ScenePoint {
+  double inverse_depth;  ///< [1/m]; 0: nothing
+  bool at_edge;
+};
+ScenePoint scene_point(const Rendering& picture, const CameraModel& image, const Eigen::Vector2d& pixel);
 
 class TrackTruth {
  public:

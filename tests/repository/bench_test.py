@@ -46,7 +46,7 @@ class Bench(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def test_every_benchmark_tells_what_it_does(self):
-        for name in ("ablation", "datasets", "external", "figures", "flights", "mirrors", "reading", "real", "revisits", "silence", "sim_suite", "space", "speed", "starts",
+        for name in ("ablation", "datasets", "edges", "external", "figures", "flights", "mirrors", "reading", "real", "revisits", "silence", "sim_suite", "space", "speed", "starts",
                      "tracks", "../tests/stress"):
             self.assertIn("usage", bench(name, "--help").stdout)
 
@@ -350,6 +350,19 @@ class Bench(unittest.TestCase):
         self.assertAlmostEqual(found[0], late_s, 6)
         self.assertAlmostEqual(found[1], turn_z, 6)
         self.assertAlmostEqual(explained, 1.0, 6)
+
+    def test_edges_places_the_edges_of_the_scene_best_where_events_have_no_errors(self):
+        if not pathlib.Path(harness.DEFAULT_PROGRAM).with_name("edged_edges").is_file():
+            self.skipTest("built without EDGED_BENCH")
+        result = bench("edges", "--cache", self.folder, "--conditions", "room", "--duration", 4)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, r"(?s)Error \[px\], RMS over the edges of the scene:\n\n.*\n\| room \|")
+        edges = script("edges")
+        pairs = edges.read_pairs(next(self.folder.glob("*.csv")))
+        error = {method: edges.rms(row["error_px"] for row in rows) for method, rows in pairs.items()}
+        self.assertLess(error["exact"], 0.06)
+        self.assertLess(error["exact"], 0.8 * error["scene"])
+        self.assertLess(error["scene"], error["scene/16"])
 
     def test_a_table_is_left_as_a_page_too(self):
         text = ("# Two & more\n\nmeasured by `edged <x>`, **not** [here](a.md):\n\n| name | ATE [mm] |\n| --- | ---: |\n"
