@@ -11,6 +11,7 @@
 
 #include "edged/core/directions.hpp"
 #include "edged/estimator/solver/solver.hpp"
+#include "edged/estimator/tuning.hpp"
 #include "edged/estimator/window/landmarks.hpp"
 #include "edged/map/map_errors.hpp"
 #include "edged/map/tuning.hpp"
