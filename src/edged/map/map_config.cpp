@@ -10,7 +10,9 @@ void KeyframeMapConfig::visit(ConfigFields& fields) {
   fields.add("min_points", min_points, {"", 4, 1000, "A keyframe with fewer accurate points is not added."});
   fields.add("max_points", max_points, {"", 4, 1000, "Largest number of points per keyframe."});
   fields.add("min_known_s", min_known_s,
-             {"s", 0, 100, "No keyframe is added earlier than this after a start, because its scale is inaccurate."});
+             {"s", 0, 100,
+              "No keyframe is added earlier than this after a start, because its scale is inaccurate; but after a loss "
+              "where the map is empty."});
   fields.add("min_age_s", min_age_s,
              {"s", 0, 100, "Younger keyframes are not matched, because the window has their points."});
   fields.add(

@@ -105,11 +105,14 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
   EstimatorResult result = estimate(
       {t, std::move(motion), seen.observations, seen.keyframe, seen.events_static, seen.depth, std::move(external)},
       output.correction);
-  session_.uncertainty.place_sigma = place_.doubt(mapper_.relocalizing());
+  session_.uncertainty.place_sigma = place_.doubt();
   const TrackingStatus of_odometry = status_.update(result, session_.uncertainty, session_.estimator.initialized(), t);
   const bool relocalized = update_map(t, seen, result);
   const TrackingStatus status = status_in_map(of_odometry);
-  if (relocalized) place_.relocalize();
+  if (relocalized) {
+    place_.relocalize();
+    session_.covariance.reset();
+  }
   update_covariance(t);
   if (is_tracking(status)) mapper_.add_pose(body_.now());
   output.step = describe(t, status, std::move(result));
@@ -132,7 +135,8 @@ LocalizationOutput Localization::process(Preintegration motion, const VisionOutp
 /// The map takes the keyframes of the window: by them the body finds its place again.
 void Localization::map_window() {
   if (!config_.map.enabled) return;
-  for (const MarginalizedKeyframe& record : keyframe_records(session_.estimator.window())) mapper_.add_keyframe(record);
+  for (const MarginalizedKeyframe& record : keyframe_records(session_.estimator.window()))
+    mapper_.add_keyframe(record, !session_.estimator.provisional());
 }
 
 /// Without a gyro frames tell the motion, event frames do not: their events are compensated by it.
@@ -262,7 +266,7 @@ bool Localization::update_map(Timestamp t, const VisionOutput& seen, const Estim
   mapper_.predict(body_.now(), motion, session_.tilt_sigma);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
   if (!images.empty()) {
-    relocalized = mapper_.localize(t, images, place_.doubt(true));
+    relocalized = mapper_.localize(t, images, place_.doubt());
     if (seen.keyframe) mapper_.keyframe(t, images);
   }
   for (const MarginalizedKeyframe& record : result.marginalized_keyframes) mapper_.add_keyframe(record);
@@ -306,7 +310,6 @@ PlaceUncertainty::DeadReckoning Localization::dead_reckoning() const {
 PlaceUncertainty::DeadReckoning Localization::in_place() const {
   PlaceUncertainty::DeadReckoning begin = dead_reckoning();
   begin.velocity = std::hypot(begin.velocity, body_.now().v_O.norm());
-  begin.measured = false;
   return begin;
 }
 
@@ -316,7 +319,6 @@ PlaceUncertainty::DeadReckoning Localization::contradicted() const {
   PlaceUncertainty::DeadReckoning begin = in_place();
   begin.position = std::min((body_.now().T_O_B.translation() - session_.started_at_O).norm(),
                             begin.velocity * to_seconds(kPipelineTuning.bias_history));
-  begin.measured = true;
   return begin;
 }
 

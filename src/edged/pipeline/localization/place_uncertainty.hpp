@@ -20,7 +20,6 @@ class PlaceUncertainty {
     double velocity = 0.0;  ///< [m/s]
     double tilt = 0.0;      ///< a share of gravity is taken for acceleration [rad]
     double yaw = 0.0;       ///< [rad]
-    bool measured = true;   ///< by the IMU, from a velocity that was known
   };
 
   /// The estimate goes on after a gap.
@@ -39,7 +38,6 @@ class PlaceUncertainty {
   void end_estimate(const DeadReckoning& begin) {
     position_ = std::hypot(std::hypot(position_, begin.position), position_sigma_, by_gap_);
     yaw_ = std::hypot(yaw_, begin.yaw);
-    measured_ = measured_ && begin.measured && by_gap_ == 0.0;
     ended_ = true;
     velocity_ = begin.velocity;
     acceleration_ = kGravity * begin.tilt;
@@ -57,15 +55,13 @@ class PlaceUncertainty {
   void relocalize() { *this = PlaceUncertainty(); }
 
   /// By losses: of the start of the present estimate.
-  double position() const { return position_; }  ///< [m]
-  double yaw() const { return yaw_; }            ///< [rad]
-  /// Sigma of the position, where it speaks against the estimate; else 0. known_place: a map of before shows the place.
-  /// Without one, dead reckoning is all there is.
-  double doubt(bool known_place) const { return std::hypot(measured_ && !known_place ? 0.0 : position_, by_gap_); }
+  double position() const { return position_; }                    ///< [m]
+  double yaw() const { return yaw_; }                              ///< [rad]
+  double doubt() const { return std::hypot(position_, by_gap_); }  ///< by losses and a gap of the present estimate [m]
 
  private:
   double position_sigma_ = 0.0;  ///< of the estimate, before a gap
-  bool after_gap_ = false, ended_ = false, measured_ = true;
+  bool after_gap_ = false, ended_ = false;
   double by_gap_ = 0.0, position_ = 0.0, yaw_ = 0.0;
   double velocity_ = 0.0, acceleration_ = 0.0;
 };

@@ -19,7 +19,7 @@ Preintegration motion(double length_s, bool gap) {
 TEST(PlaceUncertainty, IgnoresDriftWithoutAGap) {
   PlaceUncertainty place;
   for (const double sigma : {0.01, 0.2, 0.5}) place.update(sigma, kEnough_m);
-  EXPECT_EQ(place.doubt(false), 0.0);
+  EXPECT_EQ(place.doubt(), 0.0);
 }
 
 TEST(PlaceUncertainty, HoldsWhatAGapAddsUntilTheCamerasOrTheMapTell) {
@@ -27,14 +27,14 @@ TEST(PlaceUncertainty, HoldsWhatAGapAddsUntilTheCamerasOrTheMapTell) {
   place.update(0.1, kEnough_m);
   place.end_gap();
   place.update(0.6, kEnough_m);
-  EXPECT_NEAR(place.doubt(false), 0.5, 1e-12);
+  EXPECT_NEAR(place.doubt(), 0.5, 1e-12);
   PlaceUncertainty relocalized = place;
   relocalized.relocalize();
-  EXPECT_EQ(relocalized.doubt(false), 0.0);
+  EXPECT_EQ(relocalized.doubt(), 0.0);
   place.update(0.12, kEnough_m);
-  EXPECT_EQ(place.doubt(false), 0.0);
+  EXPECT_EQ(place.doubt(), 0.0);
   place.update(0.6, kEnough_m);
-  EXPECT_EQ(place.doubt(false), 0.0) << "later drift is none of it";
+  EXPECT_EQ(place.doubt(), 0.0) << "later drift is none of it";
 }
 
 TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized) {
@@ -45,14 +45,13 @@ TEST(PlaceUncertainty, GrowsWithDeadReckoningAfterALossAndStaysUntilRelocalized)
   EXPECT_NEAR(place.yaw(), 0.01, 1e-12);
   place.dead_reckon(motion(0.02, false));
   EXPECT_NEAR(place.position(), 0.034, 1e-3);
-  EXPECT_EQ(place.doubt(false), 0.0) << "the IMU tells the motion";
   place.dead_reckon(motion(2.0, true));
   EXPECT_GT(place.position(), 2.5) << "2.2 sqrt(2^3 / 3) of the gap";
   EXPECT_GT(place.yaw(), 0.7);
   const double sigma = place.position();
   place.update(0.01, kEnough_m);
   EXPECT_EQ(place.position(), sigma);
-  EXPECT_EQ(place.doubt(true), sigma) << "a map would show more";
+  EXPECT_EQ(place.doubt(), sigma) << "dead reckoning is no map";
   place.relocalize();
   EXPECT_EQ(place.position(), 0.0);
 }
@@ -71,12 +70,12 @@ TEST(PlaceUncertainty, TakesAShareOfGravityForAcceleration) {
   EXPECT_NEAR(place.position(), 0.5 * 0.01 * kGravity * 4.0, 0.03);
 }
 
-TEST(PlaceUncertainty, DistinguishesMotionThatNothingMeasured) {
+TEST(PlaceUncertainty, DoubtsAPlaceThatOnlyTheImuTells) {
   PlaceUncertainty place;
-  place.end_estimate({.velocity = 0.5, .measured = false});
+  place.end_estimate({.velocity = 0.5});
   for (int i = 0; i < 100; ++i) place.dead_reckon(motion(0.01, false));
-  EXPECT_NEAR(place.doubt(false), 0.5, 0.01);
-  EXPECT_EQ(place.doubt(false), place.position());
+  EXPECT_NEAR(place.doubt(), 0.5, 0.01);
+  EXPECT_EQ(place.doubt(), place.position());
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ void Mapper::begin_start(const OdomState& now, double tilt_sigma, double gap_s) 
   loops_.reset();
   p_O_B_ = now.T_O_B.translation();
   in_window_.clear();
+  young_.clear();
   matches_.clear();
 }
 
@@ -104,8 +105,8 @@ std::optional<SavedMap> Mapper::save() const {
 
 void Mapper::predict(const OdomState& now, Motion motion, double tilt_sigma) {
   const bool at_rest = motion != Motion::Any;
-  const bool young = dead_reckoning_s_ > 0.0 && to_seconds(now.t - started_) < config_.keyframes.min_known_s;
-  const double drift = motion == Motion::None ? 0.0 : young ? kMapTuning.young_drift_factor : 1.0;
+  const bool drifts = dead_reckoning_s_ > 0.0 && is_young(now.t);
+  const double drift = motion == Motion::None ? 0.0 : drifts ? kMapTuning.young_drift_factor : 1.0;
   filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, drift);
   if (tilt_sigma > 0.0) filter_.set_tilt_sigma(tilt_sigma);
   predicted_ = now.t;
@@ -287,7 +288,7 @@ double Mapper::covered_share(std::span<const PosedImage> images) const {
 }
 
 void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
-  if (config_.localize_only || to_seconds(t - started_) < config_.keyframes.min_known_s) return;
+  if (config_.localize_only || (is_young(t) && !map_.keyframes().empty())) return;
   if (!map_.needs_keyframe(covered_share(images))) return;
   MapKeyframe& keyframe = in_window_.emplace_back(MapKeyframe{t, t, {}});
   keyframe.path_m = path_m_;
@@ -303,19 +304,31 @@ void Mapper::keyframe(Timestamp t, std::span<const PosedImage> images) {
   }
 }
 
-void Mapper::add_keyframe(const MarginalizedKeyframe& record) {
+void Mapper::add_keyframe(const MarginalizedKeyframe& record, bool last_chance) {
+  if (last_chance)
+    for (auto& [keyframe, T_O_B] : std::exchange(young_, {})) insert(keyframe, T_O_B);
   record_.refine({record.t, record.T_O_B});
   while (!in_window_.empty() && in_window_.front().t < record.t) in_window_.pop_front();
   if (in_window_.empty() || in_window_.front().t != record.t) return;
-  MapKeyframe& keyframe = in_window_.front();
+  MapKeyframe keyframe = std::move(in_window_.front());
+  in_window_.pop_front();
   for (MapView& view : keyframe.views)
     place_points(view, *std::ranges::find(record.views, view.camera, &KeyframeView::camera));
-  if (!map_.prune_points(keyframe)) return;
-  keyframe.number = record_.add_keyframe({record.t, record.T_O_B});
+  if (is_young(record.t) && !last_chance)
+    young_.emplace_back(std::move(keyframe), record.T_O_B);
+  else if (insert(keyframe, record.T_O_B))
+    young_.clear();
+}
+
+/// If it is worth it.
+bool Mapper::insert(MapKeyframe& keyframe, const SE3& T_O_B) {
+  if (!map_.prune_points(keyframe)) return false;
+  const Timestamp t = keyframe.t;
+  keyframe.number = record_.add_keyframe({t, T_O_B});
   map_.add(std::move(keyframe));
-  in_window_.pop_front();
-  filter_.add_keyframe(odom_to_map_.T_M_O(), record.T_O_B, record.t);
+  filter_.add_keyframe(odom_to_map_.T_M_O(), T_O_B, t);
   if (const auto redundant = map_.redundant_keyframe(localized_period())) remove_keyframe(*redundant);
+  return true;
 }
 
 void Mapper::remove_keyframe(std::size_t keyframe) {

@@ -51,7 +51,8 @@ class Mapper {
   /// The packet has become a keyframe, with these images.
   void keyframe(Timestamp t, std::span<const PosedImage> images);
   /// A keyframe has left the window: kept if it is worth it.
-  void add_keyframe(const MarginalizedKeyframe& record);
+  /// last_chance: at a gap or a loss, where keyframes soon after the start are better than no map.
+  void add_keyframe(const MarginalizedKeyframe& record, bool last_chance = false);
 
   /// Adds a published pose of the odometry to the trajectory.
   void add_pose(const OdomState& now) { record_.add({now.t, now.T_O_B}); }
@@ -79,8 +80,6 @@ class Mapper {
   bool awaiting_relocalization() const { return loaded_map_until_.has_value(); }
   /// With localize_only: the body has been relocalized in the loaded map, and no loss has followed.
   bool localized() const { return !relocalizing_ && !loaded_map_until_ && !map_.keyframes().empty(); }
-  /// Older keyframes show where the body is after a loss or a gap, but none has been matched since.
-  bool relocalizing() const { return relocalizing_; }
   /// Time since the last map match or rest [s].
   double unmatched_s() const { return to_seconds(predicted_ - last_match_); }
 
@@ -100,6 +99,8 @@ class Mapper {
   bool close_loop(Timestamp t, std::span<const PosedImage> images);
   std::optional<TrajectorySmoother::Closed> closed() const;
   double covered_share(std::span<const PosedImage> images) const;
+  bool is_young(Timestamp t) const { return to_seconds(t - started_) < config_.keyframes.min_known_s; }
+  bool insert(MapKeyframe& keyframe, const SE3& T_O_B);
   void remove_keyframe(std::size_t keyframe);
 
   MapConfig config_;
@@ -111,8 +112,9 @@ class Mapper {
   std::vector<StartRecord> starts_;  ///< that have ended
   OdomToMap odom_to_map_;
   std::deque<MapKeyframe> in_window_;  ///< appearance of keyframes whose poses and depths the window still refines
-  std::vector<MapMatch> matches_;      ///< in the newest images that were matched
-  SE3 T_M_B_matched_;                  ///< then
+  std::vector<std::pair<MapKeyframe, SE3>> young_;  ///< with T_O_B, of a start before which there was no map
+  std::vector<MapMatch> matches_;                   ///< in the newest images that were matched
+  SE3 T_M_B_matched_;                               ///< then
   std::optional<Timestamp> last_search_;
   Timestamp predicted_;            ///< newest pose of the odometry
   Timestamp last_match_;           ///< or rest

@@ -82,16 +82,38 @@ TEST_F(MapperBeforeAWall, RelocalizesAfterALoss) {
   EXPECT_EQ(mapper.final_trajectory().keyframes.size(), 1U);
 }
 
+TEST_F(MapperBeforeAWall, RelocalizesAfterALossBeforeThereIsAMap) {
+  for (const bool last_chance : {false, true}) {
+    Mapper mapper{MapConfig{}, kLostAfter_s};
+    mapper.restart(SE3(), now(0.0, SE3()));
+    add_keyframe(mapper, 1.0, SE3());
+    add_keyframe(mapper, 2.0, SE3(), last_chance);
+    EXPECT_EQ(mapper.save()->keyframes.size(), last_chance ? 2U : 0U) << "what had left the window, too";
+    const SE3 off = shift(0.0, 0.02, 0.01);
+    mapper.restart(SE3(), now(5.0, off));
+    EXPECT_EQ(localize(mapper, 5.1, off, SE3()), last_chance);
+  }
+}
+
+TEST_F(MapperBeforeAWall, ForgetsKeyframesOfAReplacedStart) {
+  Mapper mapper{MapConfig{}, kLostAfter_s};
+  mapper.restart(SE3(), now(0.0, SE3()));
+  add_keyframe(mapper, 1.0, SE3());
+  mapper.restart(SE3(), now(1.5, SE3()));
+  add_keyframe(mapper, 2.0, SE3(), true);
+  EXPECT_EQ(mapper.save()->keyframes.size(), 1U);
+}
+
 TEST_F(MapperBeforeAWall, TakesNoMatchWhereDeadReckoningIsUncertain) {
   Mapper mapper{MapConfig{}, kLostAfter_s};
   mapper.restart(SE3(), now(0.0, SE3()));
   add_keyframe(mapper, 5.0, SE3());
   mapper.add_pose(now(6.0, SE3()));
   mapper.restart(SE3(), now(10.0, SE3()));
-  EXPECT_TRUE(mapper.relocalizing());
+  EXPECT_FALSE(mapper.localized());
   EXPECT_FALSE(localize(mapper, 10.1, SE3(), SE3(), 1.0)) << "it may be by chance";
   EXPECT_TRUE(localize(mapper, 10.4, SE3(), SE3(), 1.0)) << "by the appearance of two images";
-  EXPECT_FALSE(mapper.relocalizing());
+  EXPECT_TRUE(mapper.localized());
 }
 
 TEST_F(MapperBeforeAWall, FindsItsPlaceInAMapOfAnotherRunByTwoImagesThatAgree) {

@@ -48,15 +48,16 @@ class MapperBeforeAWall : public testing::Test {
   }
 
   /// A keyframe at the origin of M, that has left the window.
-  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B) const {
-    add_keyframe(mapper, t_s, T_O_B, image(SE3()));
+  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B, bool last_chance = false) const {
+    add_keyframe(mapper, t_s, T_O_B, image(SE3()), last_chance);
   }
-  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B, const TrackedImage& seen) const {
+  void add_keyframe(Mapper& mapper, double t_s, const SE3& T_O_B, const TrackedImage& seen,
+                    bool last_chance = false) const {
     mapper.predict(now(t_s, T_O_B));
     mapper.keyframe(second(t_s), std::vector{PosedImage{seen, T_O_B * T_B_C_}});
     MarginalizedKeyframe record{second(t_s), T_O_B, {{"cam", T_B_C_, {}}}};
     for (const Track& track : seen.tracks) record.views.front().points.push_back({track.id, track.point, 0.5, 0.005});
-    mapper.add_keyframe(record);
+    mapper.add_keyframe(record, last_chance);
   }
 
   bool localize(Mapper& mapper, double t_s, const SE3& T_O_B, const SE3& T_M_B, double place_sigma = 0.0) const {
