@@ -10,7 +10,6 @@
 #include <string>
 
 #include "common/step_numbers.hpp"
-#include "edged/eval/metrics.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "edged/measurement.hpp"
 #include "edged/odometry.hpp"

@@ -13,7 +13,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "common/config_source.hpp"
+#include "common/source.hpp"
 #include "edged/camera/undistort.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/statistics.hpp"
@@ -45,10 +45,7 @@ constexpr double kAlong = 0.4;          // cosine between motion and normal belo
 constexpr double kGradientNoise = 0.3;  // [px^2], as for gradient patches
 
 struct EdgeOptions {
-  std::string preset = "room";
-  int seed = 1;
-  double duration_s = 10.0;
-  std::vector<std::string> simulator;  ///< "key=value"
+  SourceOptions source;
   std::filesystem::path out;
 };
 
@@ -83,11 +80,9 @@ struct KeyframeShot {
 };
 
 SimulatorConfig config_of(const EdgeOptions& options) {
-  SimulatorConfig config = simulator_preset(options.preset);
-  config.seed = options.seed;
-  config.duration_s = options.duration_s;
-  assign(config, options.simulator);
-  return config;
+  const std::optional<SimulatorConfig> config = simulator_config(options.source);
+  if (!config) throw InputError::format("{}: no simulation; give sim:PRESET:SEED", options.source.recording);
+  return *config;
 }
 
 class Experiment {
@@ -385,10 +380,7 @@ int main(int argc, char** argv) {
   using namespace edged;
   CLI::App app{"How well edges and features of an event frame tell its pose relative to a keyframe", "edged_edges"};
   EdgeOptions options;
-  app.add_option("--preset", options.preset, "As for edged simulate")->capture_default_str();
-  app.add_option("--seed", options.seed, "Another flight")->capture_default_str();
-  app.add_option("--duration", options.duration_s, "[s]")->capture_default_str();
-  add_assignments(app, "--sim", "One option of the simulator", options.simulator);
+  app.add_option("FLIGHT", options.source.recording, "As for edged run: sim:PRESET:SEED:KEY=VALUE,...")->required();
   app.add_option("--out", options.out, "Table to write (csv)")->required();
   return run_program(app, argc, argv, [&] { return Experiment(options).run(); });
 }

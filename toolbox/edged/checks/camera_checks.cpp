@@ -19,7 +19,7 @@ void check_shift(const CameraCheck& check, Findings& out) {
   // In low light, events are delayed by milliseconds, which is no error of the clock.
   constexpr double kDetermined_ms = 5.0;
   constexpr double kMostCorrected_ms = 32.0;  // by a run: 4 sigma of estimator.calibration.time_offset_sigma_ms
-  constexpr double kCertain = 4.0;            // exceeded by chance in one of 600
+  constexpr double kCertain = 4.0;            // a t that chance exceeds in one of 600
   const bool events = check.camera.modality == Modality::Events;  // under vibration their images gave 37 ms too much
   const double least_ms = events ? 8.0 : 5.0;
   const GyroAgreement& found = *check.agreement;

@@ -150,7 +150,7 @@ void move(GyroMount& mount, const Parameters& step) {
   const double length = step.head<3>().norm();
   const Eigen::Vector3d turn = step.head<3>() * std::min(1.0, 0.3 / std::max(length, 1e-12));
   mount.R_B_C = mount.R_B_C * so3::exp(turn).toRotationMatrix();
-  mount.shift_s += std::clamp(step[3], -0.02, 0.02);
+  mount.shift_s += std::clamp(step[kShiftAt], -0.02, 0.02);
   mount.bias += step.segment<3>(4);
   mount.gyro_scale *= std::exp(std::clamp(step[7], -0.2, 0.2));
 }
