@@ -65,7 +65,8 @@ void judge_lens_and_position(const CalibrationFound& c, std::vector<Finding>& ou
   }
   if (list.empty()) return;
   out.push_back(
-      {Severity::Warning, fmt::format("camera {}: differs from the calibration by {}", c.camera, list),
+      {corrected ? Severity::Warning : Severity::Error,
+       fmt::format("camera {}: differs from the calibration by {}", c.camera, list),
        corrected ? "the run has corrected it; pass calibration_found.yaml of this run with --calib, or calibrate again"
                  : "more than a run can correct: choose the calibration of this lens, or calibrate it again"});
 }

@@ -78,13 +78,15 @@ TEST(Verdict, IsNotExplainedByAWarning) {
 }
 
 TEST(Verdict, CallsALensCorrectedOnlyWhereARunCanCorrectIt) {
-  for (const auto& [off_percent, remedy] : {std::pair(2.4, "the run has corrected"), {4.0, "more than a run can"}}) {
+  for (const auto& [off_percent, severity, remedy] :
+       {std::tuple(2.4, Severity::Warning, "the run has corrected"), {4.0, Severity::Error, "more than a run can"}}) {
     RunSummary run = doubtful_run();
     run.calibration = {{"frames", 0.0, 0.0, 0.0, false, 0.1, 0.3}};
     run.calibration.front().corrections = {{"fx_percent", off_percent, 0.14, 0.4}};
     judge_run(run, SourceOptions(), Ending::Complete);
     EXPECT_THAT(run.verdict.findings.front().text, StartsWith("camera frames: differs from the calibration by fx"));
     EXPECT_THAT(run.verdict.findings.front().remedy, StartsWith(remedy));
+    EXPECT_EQ(run.verdict.findings.front().severity, severity);
   }
 }
 

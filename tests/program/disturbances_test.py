@@ -182,7 +182,8 @@ ROWS = {
     "focal_length_doubled": Row(calibration(r"(intrinsics: \[)([\d.]+, [\d.]+)", lambda n: 2 * n), "error", f"camera frames: {LENS} a focal length near 199 px",
                                 "calibration of this lens", doctor=3, run=5, never=MOUNTING),
     "radtan_as_equidistant": Row({"calibration.yaml": lambda lines: ["".join(lines).replace("radtan", "equidistant").replace(", 0]\n    T", "]\n    T")]},
-                                 "error", f"camera frames: {LENS} its coefficients fit as radtan", "calibration of this lens", doctor=3, never=MOUNTING),
+                                 "error", f"camera frames: ({LENS} its coefficients fit as radtan|differs from the calibration by k1)",
+                                 "calibration of this lens", doctor=3, run=5, never=MOUNTING),
     "images_thrice": Row({"images.txt": lambda lines: [f"{float(t) + k:.6f} {name}\n" for t, name in map(str.split, lines)
                                                        for k in (0, 0.01, 0.02)]}, "warning", r"6\d % of the frames repeat the image before", "remove the repeated ones", run=0),
     "truth_frozen": Row(truth(frozen), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "remove the wrong poses", run=0, never="covariance"),
@@ -207,6 +208,13 @@ ROWS_OF_TWO = {
     "two_exchanged_by_events": Row({"events.txt": "events2.txt", "events2.txt": "events.txt"}, "error",
                                    "cameras events and events2: their images match only if exchanged", "exchange their topics", doctor=3, run=5,
                                    never="rig|differs|covariance", mode="events"),
+}
+
+
+ROWS_OF_A_FISHEYE = {
+    "fisheye_clean": Row({}, "none", run=0),
+    "equidistant_as_radtan": Row({"calibration.yaml": lambda lines: ["".join(lines).replace("equidistant", "radtan")]}, "error",
+                                 f"camera frames: {LENS} its coefficients fit as equidistant", "calibration of this lens", doctor=3, run=5, never=MOUNTING),
 }
 
 
@@ -257,6 +265,10 @@ class DisturbancesOfTwoCameras(Disturbed):
     SIMULATION = (*Disturbed.SIMULATION, "--baseline", 0.1)
 
 
+class DisturbancesOfAFisheye(Disturbed):
+    SIMULATION = (*Disturbed.SIMULATION, "--preset", "fisheye")
+
+
 def add_tests(of_class, rows):
     for name, of_table in rows.items():
         setattr(of_class, f"test_{name}", lambda self, row=of_table: self.check(row))
@@ -264,6 +276,7 @@ def add_tests(of_class, rows):
 
 add_tests(Disturbances, ROWS)
 add_tests(DisturbancesOfTwoCameras, ROWS_OF_TWO)
+add_tests(DisturbancesOfAFisheye, ROWS_OF_A_FISHEYE)
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)
