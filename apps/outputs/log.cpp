@@ -19,10 +19,11 @@ class RunStatusLine : public RunObserver {
   void on_step(const Step& step) override {
     if (line_.due()) line_.show(text_of(step), share_done(step.t, run_.info()));
   }
-  void on_optimization() override {
+  void on_optimization(double share) override {
     constexpr double kLong_s = 5.0;  // of a run: the optimization takes seconds a minute of recording
     if (run_.meter.wall_s() > kLong_s)
-      line_.show(fmt::format("joint optimization of {}", quantity(run_.statistics.keyframes(), "keyframe")));
+      line_.show(fmt::format("joint optimization of {}, {:.0f} %", quantity(run_.statistics.keyframes(), "keyframe"),
+                             100.0 * share));
   }
   void on_summary(RunEnd&) override { line_.clear(); }
 

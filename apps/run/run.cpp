@@ -218,9 +218,12 @@ RunEnd Run::summarize(const RunReader& reader, bool broken_off) {
     end.summary.verdict.findings.push_back({Severity::Warning, "ground truth: cannot be used: " + truth_.problem,
                                             "correct it; edged eval TRUTH trajectory.tum compares later"});
   {
-    for (const auto& observer : observers_) observer->on_optimization();
+    const auto tell = [this](double share) {
+      for (const auto& observer : observers_) observer->on_optimization(share);
+    };
     const auto timer = run_.timings.measure("final_trajectory");
-    end.final_trajectory = odometry_.final_trajectory();
+    tell(0.0);
+    end.final_trajectory = odometry_.final_trajectory(tell);
   }
   for (const auto& observer : observers_) observer->on_summary(end);
   end.timings = odometry_.timings();

@@ -90,8 +90,8 @@ class RunObserver {
   /// Called before the odometry gets the measurement.
   virtual void on_measurement(const Measurement&) {}
   virtual void on_step(const Step&) {}
-  /// After the last step: the final trajectory is about to be optimized.
-  virtual void on_optimization() {}
+  /// After the last step: before the joint optimization, and after each of its steps with the share that is done.
+  virtual void on_optimization(double /*share*/) {}
   /// At the end of the steps: adds the results of this observer. Summary and truth are complete except for those of
   /// others.
   virtual void on_summary(RunEnd&) {}

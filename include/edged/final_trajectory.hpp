@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct MappedKeyframe {
   Timestamp found_at;   ///< time of the last match; t without any
   std::vector<Point> points;
 };
+
+/// Called after each step of the joint optimization with the share of its steps that are done: at most 1, and less
+/// where it converges early.
+using OptimizationProgress = std::function<void(double share)>;
 
 /// The joint solution of all keyframes by all measurements. It is not causal; the causal trajectory is in the steps.
 struct FinalTrajectory {

@@ -70,7 +70,7 @@ class Odometry {
 
   /// The final trajectory and the map: a joint optimization of all keyframes by all measurements so far. Call it after
   /// the last step. Not causal. It takes about a second, and its record two megabytes, for a minute of flight.
-  FinalTrajectory final_trajectory() const;
+  FinalTrajectory final_trajectory(const OptimizationProgress& progress = {}) const;
 
   /// The cameras of the mode with their present online calibration: lens, pose relative to the body, and total time
   /// offset.

@@ -235,7 +235,8 @@ void bind_odometry(py::module_& module) {
       .def("load_map", &load_map, py::arg("map"))
       .def("save_map", &save_map)
       .def_property_readonly("awaiting_relocalization", &call<&Odometry::awaiting_relocalization>)
-      .def("final_trajectory", &call<&Odometry::final_trajectory>)
+      .def("final_trajectory",
+           [](PyOdometry& self) { return guarded(self.mutex, [&] { return self.odometry.final_trajectory(); }); })
       .def_property_readonly("rig", [](PyOdometry& self) { return cameras(call<&Odometry::rig>(self)); })
       .def_property_readonly("counters", &counters)
       .def_property_readonly("timings", &timings)

@@ -107,7 +107,9 @@ std::optional<NavState> Odometry::state_at(Timestamp t) const { return impl_->pr
 void Odometry::load_map(std::string_view bytes) { impl_->localization.load_map(bytes); }
 bool Odometry::awaiting_relocalization() const { return impl_->localization.awaiting_relocalization(); }
 std::optional<std::string> Odometry::save_map() const { return impl_->localization.save_map(); }
-FinalTrajectory Odometry::final_trajectory() const { return impl_->localization.final_trajectory(); }
+FinalTrajectory Odometry::final_trajectory(const OptimizationProgress& progress) const {
+  return impl_->localization.final_trajectory(progress);
+}
 Rig Odometry::rig() const { return impl_->localization.rig(); }
 std::optional<CalibrationCovariance> Odometry::calibration_covariance(const std::string& camera) const {
   return impl_->localization.calibration_covariance(camera);

@@ -78,7 +78,8 @@ class Neighbourhood {
   EnvelopeCholesky cholesky_;
 };
 
-SolveSummary solve(Window& window, const Cost& cost, Layout layout, int max_iterations) {
+SolveSummary solve(Window& window, const Cost& cost, Layout layout, int max_iterations,
+                   const std::function<void(double)>& progress = {}) {
   SolveSummary summary;
   summary.initial_cost = summary.final_cost = value_of(window, cost);
   summary.usable = std::isfinite(summary.initial_cost);
@@ -89,6 +90,7 @@ SolveSummary solve(Window& window, const Cost& cost, Layout layout, int max_iter
   while (summary.iterations < max_iterations) {
     ++summary.iterations;
     const double value = around.try_step(current, damping, summary.final_cost);
+    if (progress) progress(static_cast<double>(summary.iterations) / max_iterations);
     if (value < summary.final_cost) {
       const double gain = summary.final_cost - value;
       summary.final_cost = value;
@@ -121,9 +123,9 @@ SolveSummary solve(Window& window, int max_iterations) {
   return solve(window, cost, Layout(blocks, blocks), max_iterations);
 }
 
-SolveSummary solve_long(Window& window, int max_iterations) {
+SolveSummary solve_long(Window& window, int max_iterations, const std::function<void(double)>& progress) {
   const Cost cost = cost_of(window);
-  return solve(window, cost, banded_layout(window, cost), max_iterations);
+  return solve(window, cost, banded_layout(window, cost), max_iterations, progress);
 }
 
 }  // namespace edged

@@ -57,7 +57,9 @@ class Localization {
   void load_map(std::string_view bytes);
   std::optional<std::string> save_map() const;
   bool awaiting_relocalization() const { return mapper_.awaiting_relocalization(); }
-  FinalTrajectory final_trajectory() const { return mapper_.final_trajectory(session_.estimator.record()); }
+  FinalTrajectory final_trajectory(const OptimizationProgress& progress = {}) const {
+    return mapper_.final_trajectory(session_.estimator.record(), progress);
+  }
   Rig rig() const { return calibration_.total(); }
   std::optional<CalibrationCovariance> calibration_covariance(const std::string& camera) const;
   ExternalCounters external_counters() const;

@@ -52,12 +52,12 @@ class StartOptimization {
   }
 
   /// Poses in M.
-  Trajectory optimize(FinalCost& cost) {
+  Trajectory optimize(FinalCost& cost, const OptimizationProgress& progress) {
     Window window(start_);
     window.relinearise_intrinsics();
     remove_hidden(window);
     predict_observations(window);
-    const SolveSummary summary = solve_long(window, kMapTuning.final_iterations);
+    const SolveSummary summary = solve_long(window, kMapTuning.final_iterations, progress);
     if (!summary.usable) return {};
     cost.before += summary.initial_cost;
     cost.after += summary.final_cost;
@@ -164,12 +164,21 @@ class StartOptimization {
 }  // namespace
 
 Trajectory optimize_jointly(const TrajectorySmoother& record, std::vector<StartRecord> starts,
-                            TrajectorySmoother::Solution& solution, FinalCost& cost) {
+                            TrajectorySmoother::Solution& solution, FinalCost& cost,
+                            const OptimizationProgress& progress) {
   const std::map<Timestamp, std::size_t> numbers = record.keyframe_numbers();
+  std::erase_if(starts, [](const StartRecord& start) { return start.states.size() < 2; });
+  double states = 0.0, done = 0.0;
+  for (const StartRecord& start : starts) states += static_cast<double>(start.states.size());
   Trajectory all;
   for (StartRecord& start : starts) {
-    if (start.states.size() < 2) continue;
-    for (const StampedPose& pose : StartOptimization(record, std::move(start), solution).optimize(cost)) {
+    const auto part = static_cast<double>(start.states.size());
+    const auto of_all = [&](double share) {
+      if (progress) progress((done + share * part) / states);
+    };
+    const Trajectory poses = StartOptimization(record, std::move(start), solution).optimize(cost, of_all);
+    done += part;
+    for (const StampedPose& pose : poses) {
       if (const auto number = numbers.find(pose.t); number != numbers.end())
         solution.keyframes[number->second] = pose.T;
       all.push_back(pose);

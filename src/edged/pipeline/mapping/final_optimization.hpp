@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edged/estimator/window/start_record.hpp"
+#include "edged/final_trajectory.hpp"
 #include "edged/map/trajectory/trajectory_smoother.hpp"
 
 namespace edged {
@@ -20,6 +21,7 @@ struct FinalCost {
 /// before it and of a loaded map. `solution` has the initial values; its keyframes are replaced by the new ones.
 /// A start whose cost is not defined at the initial values has none. Deterministic.
 Trajectory optimize_jointly(const TrajectorySmoother& record, std::vector<StartRecord> starts,
-                            TrajectorySmoother::Solution& solution, FinalCost& cost);
+                            TrajectorySmoother::Solution& solution, FinalCost& cost,
+                            const OptimizationProgress& progress = {});
 
 }  // namespace edged

@@ -68,7 +68,9 @@ class FinalOptimization : public testing::Test {
   Trajectory final_path() {
     TrajectorySmoother::Solution solution = record_.solve(odom_to_map_);
     cost_ = {};
-    const Trajectory placed = optimize_jointly(record_, starts_, solution, cost_);
+    shares_.clear();
+    const Trajectory placed =
+        optimize_jointly(record_, starts_, solution, cost_, [this](double share) { shares_.push_back(share); });
     return record_.path(odom_to_map_, solution, placed);
   }
   /// The largest position error from some time on, all poses aligned at the first one.
@@ -90,12 +92,14 @@ class FinalOptimization : public testing::Test {
   std::vector<StartRecord> starts_;
   std::vector<std::pair<double, std::size_t>> keyframes_;  ///< made at, number
   FinalCost cost_;
+  std::vector<double> shares_;  ///< of the steps that were done
   bool matches_ = false;
 };
 
 TEST_F(FinalOptimization, OfNothingIsNothing) {
   starts_.emplace_back();
   EXPECT_TRUE(final_path().empty());
+  EXPECT_TRUE(shares_.empty());
   EXPECT_EQ(cost_.after, 0.0);
 }
 
@@ -128,6 +132,9 @@ TEST_F(FinalOptimization, PlacesALaterStartByTheKeyframesOfAnEarlierOne) {
   fly(14.0, 24.0, SE3(so3::exp({0.0, 0.0, 0.02}), {0.05, -0.04, 0.0}));  // dead reckoning was off
   const Trajectory poses = final_path();
   EXPECT_LT(error(poses, 14.0), 0.04) << "dead reckoning was off by 0.064, and turned";
+  EXPECT_TRUE(std::ranges::is_sorted(shares_));
+  EXPECT_GT(shares_.back(), 11.0 / 21.0) << "of both starts";
+  EXPECT_LE(shares_.back(), 1.0);
   EXPECT_LT(cost_.after, cost_.before);
 }
 

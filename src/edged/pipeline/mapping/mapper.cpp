@@ -340,13 +340,13 @@ void Mapper::end_start(StartRecord start) {
   if (!start.empty()) starts_.push_back(std::move(start));
 }
 
-FinalTrajectory Mapper::final_trajectory(StartRecord present) const {
+FinalTrajectory Mapper::final_trajectory(StartRecord present, const OptimizationProgress& progress) const {
   FinalTrajectory all = previous_trajectory_;
   TrajectorySmoother::Solution solution = record_.solve(odom_to_map_, closed());
   std::vector<StartRecord> starts = starts_;
   if (!present.empty()) starts.push_back(std::move(present));
   FinalCost cost;
-  const Trajectory placed = optimize_jointly(record_, std::move(starts), solution, cost);
+  const Trajectory placed = optimize_jointly(record_, std::move(starts), solution, cost, progress);
   const Trajectory path = record_.path(odom_to_map_, solution, placed);
   all.initial_cost += cost.before;
   all.final_cost += cost.after;

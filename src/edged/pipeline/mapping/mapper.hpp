@@ -69,7 +69,7 @@ class Mapper {
   /// A start of the estimator has ended: all its measurements.
   void end_start(StartRecord start);
   /// The trajectory in M, with those of earlier epochs. present: the start that has not ended.
-  FinalTrajectory final_trajectory(StartRecord present = {}) const;
+  FinalTrajectory final_trajectory(StartRecord present = {}, const OptimizationProgress& progress = {}) const;
 
   /// Loads a map of an earlier run, in place of the present one. Until relocalization M is a frame of this run's own.
   void load(const SavedMap& map);
