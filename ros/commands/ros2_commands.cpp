@@ -139,8 +139,8 @@ struct PlayOptions {
 
 void wait_for_subscribers(const ros2::Player& player, StatusLine& status) {
   constexpr auto kGrace = std::chrono::milliseconds(500);  // the other topics of the subscriber follow
-  while (!player.has_subscriber() && interrupt_signal() == 0) {
-    if (status.due()) status.show("waiting for a subscriber");
+  for (std::string topic; !(topic = player.unsubscribed()).empty() && interrupt_signal() == 0;) {
+    if (status.due()) status.show(fmt::format("waiting for a subscriber to {} (-r renames topics)", topic));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   std::this_thread::sleep_for(kGrace);
@@ -187,7 +187,7 @@ int run_play(const PlayOptions& options) {
 void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
   const auto options = std::make_shared<Ros2Options>();
   CLI::App* ros2 = app.add_subcommand("ros2", "Run on topics of ROS 2, without ROS: reads sensors, publishes poses");
-  ros2->add_option("--rig", options->rig, "Name of a rig that ships, or a calibration file");
+  ros2->add_option("--rig,--calib", options->rig, "Name of a rig that ships, or a calibration file");
   ros2->add_option("--mode", options->mode, "Sensors used beside the IMU: events, frames or fused [fused]");
   add_config_options(*ros2, options->config);
   add_ros2_place(*ros2, options->place, "edged");

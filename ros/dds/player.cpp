@@ -71,10 +71,12 @@ void Player::add_topic(const std::string& topic, std::string_view type) {
   writers_.try_emplace(topic, participant_, setup_.names->full_name(topic), type, qos);
 }
 
-bool Player::has_subscriber() const {
+std::string Player::unsubscribed() const {
   const auto imu = writers_.find("imu");
-  if (imu != writers_.end()) return imu->second.readers() > 0;
-  return std::ranges::any_of(writers_, [](const auto& writer) { return writer.second.readers() > 0; });
+  const bool any = imu == writers_.end()
+                       ? std::ranges::any_of(writers_, [](const auto& w) { return w.second.readers() > 0; })
+                       : imu->second.readers() > 0;
+  return any ? "" : setup_.names->full_name((imu == writers_.end() ? writers_.begin() : imu)->first);
 }
 
 PlayCounters Player::play(Dataset& dataset, const std::function<bool()>& stop,

@@ -38,8 +38,9 @@ class Player {
   /// Throws InputError if the network cannot be had, or the size of an event sensor is unknown.
   Player(const PlaySetup& setup, WriterSetup recording);
 
-  /// Whether somebody subscribes to the IMU, or to anything if the recording has none.
-  bool has_subscriber() const;
+  /// The topic that nobody subscribes to yet: that of the IMU, or any one if the recording has none. Empty if somebody
+  /// does.
+  std::string unsubscribed() const;
   /// At the rate of the setup, until the end or `stop`. progress: the stamp that has been sent. Throws InputError for
   /// stamps that ROS cannot hold.
   PlayCounters play(Dataset& dataset, const std::function<bool()>& stop,
