@@ -151,6 +151,15 @@ Recording open_main_file(const SourcePath& file, const Rig* rig, const Recording
   throw InputError::format("{}: only csv and txt are read within an archive: unpack it", file.string());
 }
 
+/// The calibration.yaml of the folder, if any. Logs why it cannot be used.
+std::optional<Calibration> own_calibration(const SourcePath& folder) try {
+  const SourcePath own = folder / "calibration.yaml";
+  return own.is_file() ? std::optional(read_calibration(own)) : std::nullopt;
+} catch (const InputError& e) {
+  spdlog::warn(fmt::format("{}; opened without this calibration", e.what()));
+  return std::nullopt;
+}
+
 /// The only recording of the folder, with the IMU file and the calibration.yaml of the folder, if any. Logs what is not
 /// read.
 Recording open_single_file_folder(const SourcePath& folder, const std::string& file, const Rig* rig,
@@ -158,12 +167,7 @@ Recording open_single_file_folder(const SourcePath& folder, const std::string& f
   std::set<std::string> read = {file, "calibration.yaml"};
   if (const auto path = folder.disk_path())
     for (const auto& part : split_bag_parts(*path / file)) read.insert(part.filename().string());
-  std::optional<Calibration> calibration;
-  try {
-    if (const SourcePath own = folder / "calibration.yaml"; own.is_file()) calibration = read_calibration(own);
-  } catch (const InputError& e) {
-    spdlog::warn(fmt::format("{}; opened without this calibration", e.what()));
-  }
+  std::optional<Calibration> calibration = own_calibration(folder);
   RecordingOptions with_topics = options;
   if (!rig && calibration) {
     rig = &calibration->rig;
@@ -241,7 +245,10 @@ std::optional<Recording> try_hdf5_folder(const SourcePath& folder, const Rig* ri
   Recording recording = open_hdf5(*file, rig, options);
   const DatasetInfo& info = recording.dataset->info();
   const bool bare = !info.has_frames && !info.has_imu && file->parent_path() == *path;  // no data set with side files
-  return bare ? open_single_file_folder(folder, file->filename().string(), rig, options) : std::move(recording);
+  if (bare) return open_single_file_folder(folder, file->filename().string(), rig, options);
+  if (!recording.calibration && (recording.calibration = own_calibration(folder)) && !rig)
+    recording.dataset = open_hdf5(*file, &recording.calibration->rig, options).dataset;
+  return recording;
 }
 
 std::optional<Recording> try_single_file_folder(const SourcePath& folder, const Rig* rig,
