@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "edged/io/calibration.hpp"
 #include "edged/io/hdf5/h5.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/evt_test_support.hpp"
@@ -80,6 +81,20 @@ TEST(Hdf5Writer, FramesImuTruthAndSensorComeBackToTheLastBit) {
   ASSERT_EQ(back->trajectory.size(), truth.trajectory.size());
   EXPECT_EQ(back->trajectory[2999].T.translation(), truth.trajectory[2999].T.translation());
   EXPECT_EQ(back->trajectory[2999].T.rotation().coeffs(), truth.trajectory[2999].T.rotation().coeffs());
+}
+
+TEST(Hdf5Writer, ItsFolderIsReadWithTheCalibrationBesideIt) {
+  TempFolder folder;
+  const auto writer = write_hdf5(setup_for(folder.path() / "a.h5"));
+  writer->write(ImuSample{timestamp_from_ns(1'000'000), {1, 2, 3}, {4, 5, 6}});
+  writer->write(EventBatch{"events", {Event{timestamp_from_ns(2'000'000), 1, 2, true}}});
+  writer->finish();
+  EXPECT_FALSE(open_recording(folder.path()).calibration);
+  folder.write("calibration.yaml", to_yaml(load_rig("davis240c_ecd")));
+  const Recording recording = open_recording(folder.path());
+  ASSERT_TRUE(recording.calibration);
+  EXPECT_EQ(recording.calibration->rig.cameras.size(), 2U);
+  EXPECT_TRUE(recording.dataset->info().has_imu);
 }
 
 }  // namespace
