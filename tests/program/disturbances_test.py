@@ -133,11 +133,11 @@ def exchanged(one, other):
 
 
 def events(change):
-    """Their pixels."""
+    """Their pixels; None leaves an event out."""
     def changed(lines):
         for t, x, y, p in map(str.split, lines):
-            x, y = change(int(x), int(y))
-            yield f"{t} {x} {y} {p}\n"
+            if pixel := change(int(x), int(y)):
+                yield f"{t} {pixel[0]} {pixel[1]} {p}\n"
     return {"events.txt": changed}
 
 
@@ -191,6 +191,9 @@ ROWS = {
     "truth_zero": Row(truth(zero), "warning", r"ground truth: the same pose for 0\.99\d s from {at}", "remove the wrong poses", run=0),
     "truth_in_millimetres": Row(truth(millimetres), "warning", r"ground truth: 2 jumps, the first at {at}", "remove the wrong poses", run=0),
     "events_halved": Row(events(lambda x, y: (x // 2, y // 2)), "error", "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, run=5, never="frames:", mode="fused"),
+    "events_of_a_region": Row(events(lambda x, y: (x - 60, y - 45) if 60 <= x < 180 and 45 <= y < 135 else None), "error",
+                              "calibrated for 240 x 180 px, recorded 120 x 90 only", "resolution", doctor=3, run=5, never="frames:", mode="fused"),
+    "events_moved": Row(events(lambda x, y: (x - 20, y - 10) if x >= 20 and y >= 10 else None), "error", "events: they match the edges of the frames only if", "driver or the converter", doctor=3, run=5, mode="fused"),
     "events_upside_down": Row(events(lambda x, y: (239 - x, 179 - y)), "error", "events: they match the edges of the frames only if turned by 180 deg", "driver or the converter", doctor=3, run=5, mode="fused"),
     "events_reflected": Row(events(lambda x, y: (239 - x, y)), "error", "events: they match the edges of the frames only if mirrored left to right", "driver or the converter", doctor=3, run=5, mode="fused"),
     "imu_reversed": Row(imu(lambda rows, _: rows[::-1]), "refused", "imu.txt:.* stamp goes back in time", "repair or replace the file", doctor=3, run=3),

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/checks/agreement/event_agreement.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
@@ -19,6 +21,9 @@ constexpr int kAreaCells = 7;                             // of their cells; det
 // 64 x 48; two such numbers differ by 0.05. Three times that. (Flights of the simulator: 0.15 to 0.52 as given, at most
 // 0.03 when changed.)
 constexpr double kClearlyCloser = 0.15;
+// The best of hundreds of shifts is 0.1 closer by chance.
+constexpr double kClearlyMoved = 0.25;
+constexpr int kMostMoved = 16;  // cells, each way
 
 struct Change {
   int flip;  ///< of cv::flip
@@ -32,6 +37,14 @@ cv::Mat details_of(const cv::Mat& image) {
   cv::resize(image, cells, cv::Size(kPictureColumns, kPictureColumns * image.rows / image.cols), 0, 0, cv::INTER_AREA);
   cv::blur(cells, areas, cv::Size(kAreaCells, kAreaCells));
   return cells - areas;
+}
+
+/// Correlations with b moved by -kMostMoved to kMostMoved cells.
+cv::Mat shifted_correlations(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat wider, products;
+  cv::copyMakeBorder(a, wider, kMostMoved, kMostMoved, kMostMoved, kMostMoved, cv::BORDER_CONSTANT, 0.0);
+  cv::matchTemplate(wider, b, products, cv::TM_CCORR);
+  return products / std::max(cv::norm(a) * cv::norm(b), 1e-9);
 }
 
 double correlation(const cv::Mat& a, const cv::Mat& b) { return a.dot(b) / std::max(cv::norm(a) * cv::norm(b), 1e-9); }
@@ -80,6 +93,10 @@ void EventAgreement::compare(const Frame& frame) {
     cv::flip(events, changed, kChanges[i].flip);
     correlations_.at(i + 1) += correlation(edges, changed);
   }
+  if (shifted_.empty())
+    shifted_ = shifted_correlations(edges, events);
+  else
+    shifted_ += shifted_correlations(edges, events);
   ++compared_;
   due_ = frame.t + kBetweenPictures;
   counts_.setTo(0.0F);
@@ -89,8 +106,14 @@ void EventAgreement::compare(const Frame& frame) {
 std::optional<std::string> EventAgreement::better() const {
   if (compared_ < kFewestComparisons) return std::nullopt;
   const auto best = std::ranges::max_element(correlations_);
-  if (*best - correlations_[0] < kClearlyCloser * compared_) return std::nullopt;
-  return kChanges[best - correlations_.begin() - 1].text;
+  if (*best - correlations_[0] >= kClearlyCloser * compared_) return kChanges[best - correlations_.begin() - 1].text;
+  double most = 0.0;
+  cv::Point at;
+  cv::minMaxLoc(shifted_, nullptr, &most, nullptr, &at);
+  if (most - correlations_[0] < kClearlyMoved * compared_) return std::nullopt;
+  const double cell_px = static_cast<double>(counts_.cols) / kPictureColumns;
+  return fmt::format("moved by about ({:+.0f}, {:+.0f}) px", cell_px * (at.x - kMostMoved),
+                     cell_px * (at.y - kMostMoved));
 }
 
 }  // namespace edged

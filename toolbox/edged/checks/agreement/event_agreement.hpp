@@ -14,7 +14,7 @@
 
 namespace edged {
 
-/// Events lie on the edges of the frames. If they do so only when turned or mirrored, their pixels are.
+/// Events lie on the edges of the frames. If they do so only when turned, mirrored or moved, their pixels are.
 class EventAgreement {
  public:
   /// Compares the first camera of each kind, if they share a lens.
@@ -37,6 +37,7 @@ class EventAgreement {
   Timestamp due_ = Timestamp::min();  ///< of the next comparison
   int compared_ = 0;
   std::array<double, 4> correlations_{};  ///< sums: as given, and for each change
+  cv::Mat shifted_;                       ///< sums: for each shift
 };
 
 }  // namespace edged

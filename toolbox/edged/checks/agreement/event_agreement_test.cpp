@@ -64,5 +64,11 @@ TEST(EventAgreement, NamesHowEventsAreTurnedOrMirrored) {
   EXPECT_EQ(told([](int x, int y) { return std::pair(x, 179 - y); }), "mirrored top to bottom");
 }
 
+/// As of a region of interest whose origin the driver leaves out.
+TEST(EventAgreement, NamesHowFarEventsAreMoved) {
+  const auto moved = [](int x, int y) { return std::pair(std::max(x - 30, 0), std::max(y - 15, 0)); };
+  EXPECT_EQ(shown(picture(1), picture(1), moved).better(), "moved by about (+30, +15) px");
+}
+
 }  // namespace
 }  // namespace edged
