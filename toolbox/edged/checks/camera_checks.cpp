@@ -196,6 +196,19 @@ bool check_size(const CameraCheck& check, const RecordingStatistics& s, Findings
   return fits || seen.empty();
 }
 
+/// The estimator takes all rows of a frame for simultaneous.
+void check_readout(const CameraCheck& check, Findings& out) {
+  constexpr double kLeast_ms = 5.0, kSigmas = 4.0;  // global shutters (71 draws, mirrors, EuRoC): 4 ms, 2.5 sigma
+  if (!check.readout) return;
+  const double ms = 1e3 * check.readout->s, sigma_ms = 1e3 * check.readout->sigma_s;
+  if (std::abs(ms) > std::max(kLeast_ms, kSigmas * sigma_ms))
+    out.warn(
+        fmt::format("camera {}: a rolling shutter: its rows are read within {:.1f} ms +- {:.1f} ms{}",
+                    check.camera.name, std::abs(ms), sigma_ms, ms < 0.0 ? ", from below" : ""),
+        "a run takes them for simultaneous, which costs accuracy in fast motion: use a global shutter, or a shorter "
+        "readout");
+}
+
 void check_mounting(const CameraCheck& check, Findings& out) {
   if (check.agreement->mirrored)
     return out.error(
@@ -205,6 +218,7 @@ void check_mounting(const CameraCheck& check, Findings& out) {
   check.has_extrinsics ? check_rotation(check, out) : tell_rotation(check, out);
   check_scale(check, out);
   check_gyro_scale(check, out);
+  check_readout(check, out);
 }
 
 void check_camera(const CameraCheck& check, Findings& out) {

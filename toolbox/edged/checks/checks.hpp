@@ -9,6 +9,7 @@
 
 #include "edged/checks/agreement/gyro_agreement.hpp"
 #include "edged/checks/agreement/imu_clock.hpp"
+#include "edged/checks/agreement/readout.hpp"
 #include "edged/checks/finding.hpp"
 #include "edged/checks/statistics/recording_statistics.hpp"
 #include "edged/imu_noise.hpp"
@@ -25,6 +26,7 @@ struct CameraCheck {
   Duration least_turning{0};               ///< a contradiction in a shorter turning_time() does not count
   std::optional<std::string> lens = {};    ///< better_lens()
   double gross_deg = 0.0;                  ///< grossly_off_deg()
+  std::optional<Readout> readout = {};     ///< readout_of() standard frames
 
   /// True if the gyro explains enough of the rotation for the other results to be reliable.
   bool sure() const { return agreement && agreement->unexplained < 0.5; }

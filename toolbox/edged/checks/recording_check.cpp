@@ -180,8 +180,11 @@ void RecordingCheck::compare(Camera& camera) {
   check.agreement = compare_with_gyro(turns, gyro_, check.camera.time_offset);
   check.lens.reset();
   check.gross_deg = 0.0;
+  check.readout.reset();
   if (check.agreement) {
     check.lens = better_lens(check.camera, turns, gyro_, check.agreement->unexplained);
+    if (check.sure() && !check.lens && check.camera.modality == Modality::Frames)
+      check.readout = readout_of(turns, gyro_, check.camera.model, *check.agreement);
     if (!check.sure() && !check.lens) check.gross_deg = grossly_off_deg(turns, gyro_, check.camera, *check.agreement);
   }
   camera.done = camera.turning >= kEnough || confirms(check);

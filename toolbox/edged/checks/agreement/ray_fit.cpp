@@ -30,23 +30,9 @@ struct TurnTerms {
   double loss = 0.0;           ///< sum of the Cauchy losses
 };
 
-/// The direction of translation that fits the rays best.
-Eigen::Vector3d direction_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
-  for (int round = 0; round < 3; ++round) {
-    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
-    for (const auto& [from, to] : turn.rays) {
-      const Eigen::Vector3d n = from.cross(R * to);
-      M += n * n.transpose() / (1.0 + (round > 0 ? std::pow(n.dot(t) / spread, 2) : 0.0));
-    }
-    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
-  }
-  return t;
-}
-
 /// spread: the scale of the Cauchy loss of the errors.
 TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
-  const Eigen::Vector3d t = direction_of(turn, R, spread), a = t.unitOrthogonal(), b = t.cross(a);
+  const Eigen::Vector3d t = epipolar_direction(turn, R, spread), a = t.unitOrthogonal(), b = t.cross(a);
   Eigen::Matrix<double, 5, 5> H = 1e-12 * Eigen::Matrix<double, 5, 5>::Identity();
   Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
   TurnTerms terms;
@@ -228,10 +214,23 @@ void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spr
 
 }  // namespace
 
+Eigen::Vector3d epipolar_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread) {
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+  for (int round = 0; round < 3; ++round) {
+    Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+    for (const auto& [from, to] : turn.rays) {
+      const Eigen::Vector3d n = from.cross(R_begin_end * to);
+      M += n * n.transpose() / (1.0 + (round > 0 ? std::pow(n.dot(t) / spread, 2) : 0.0));
+    }
+    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
+  }
+  return t;
+}
+
 Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
   constexpr double kSpread = 1e-3;  // [rad]
   constexpr double kAgree = 0.6;    // least share of agreeing corners minus contradicting ones: points lie in front
-  const Eigen::Vector3d t = direction_of(turn, R_begin_end, kSpread);
+  const Eigen::Vector3d t = epipolar_direction(turn, R_begin_end, kSpread);
   double votes = 0.0;
   for (const auto& [from, to] : turn.rays) votes += (from - R_begin_end * to).dot(t) > 0.0 ? 1.0 : -1.0;
   if (std::abs(votes) < kAgree * static_cast<double>(turn.rays.size())) return Eigen::Vector3d::Zero();

@@ -30,6 +30,10 @@ struct RayFit {
   double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
 };
 
+/// The direction of translation, of either sign, that fits the rays best. spread: the scale of the Cauchy loss of their
+/// errors [rad].
+Eigen::Vector3d epipolar_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread);
+
 /// The unit direction of the translation during a rotation, in the camera axes at its begin. R: rotation from end to
 /// begin. Zero if the corners do not determine it.
 Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end);
