@@ -8,9 +8,9 @@
 #include <memory>
 #include <mutex>
 
-#include "edged/autopilot/arrival_clock.hpp"
 #include "edged/autopilot/mavlink_output.hpp"
 #include "edged/core/check.hpp"
+#include "edged/live/arrival_clock.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
 #include "run/run_context.hpp"
 

@@ -20,7 +20,8 @@ RunReader::RunReader(RunContext& run, std::function<void(const Measurement&)> on
   // The cost of simulation is not part of the cost of estimation, so it does not run in parallel.
   if (run_.source.seed) return;
   if (run_.options.live) {
-    live_.emplace(dataset, run_.config.live, interrupted, std::move(on_due));
+    const Due due = is_live(run_.options.source) ? Due::OnArrival : Due::BySpeed;
+    live_.emplace(dataset, run_.config.live, interrupted, std::move(on_due), due);
   } else {
     ahead_.emplace(dataset, QueueConfig{.max_megabytes = kReadAheadMegabytes}, WhenFull::Wait, interrupted);
   }

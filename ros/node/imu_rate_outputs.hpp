@@ -8,9 +8,9 @@
 #include <mutex>
 #include <optional>
 
-#include "edged/autopilot/arrival_clock.hpp"
 #include "edged/autopilot/mavlink_output.hpp"
 #include "edged/autopilot/vehicle_stream.hpp"
+#include "edged/live/arrival_clock.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
 #include "node/messages.hpp"
 #include "topics/transport.hpp"

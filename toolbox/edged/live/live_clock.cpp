@@ -7,15 +7,28 @@
 
 namespace edged {
 
-void LiveClock::wait_for(Timestamp t, const std::function<bool()>& stopped) {
+LiveClock::Clock::time_point LiveClock::wait_for(Timestamp t, const std::function<bool()>& stopped) {
   constexpr auto kLongestSleep = std::chrono::milliseconds(50);  // a stop waits no longer
-  if (!first_) begin_ = Clock::now(), first_ = t;
+  if (!first_) begin_ = now_(), first_ = t;
+  if (due_ == Due::OnArrival) {
+    const std::lock_guard lock(mutex_);
+    const Clock::time_point now = now_();
+    arrivals_.arrived(t, now.time_since_epoch());
+    return now;
+  }
   while (Clock::now() < due(t) && !stopped())
     std::this_thread::sleep_for(std::min<Clock::duration>(due(t) - Clock::now(), kLongestSleep));
+  return due(t);
+}
+
+LiveClock::Clock::time_point LiveClock::due(Timestamp t) const {
+  if (due_ == Due::BySpeed) return begin_ + (t - *first_);
+  const std::lock_guard lock(mutex_);
+  return Clock::time_point(arrivals_.at(t));
 }
 
 double LiveClock::since_due_s(Timestamp t) const {
-  return first_ ? std::chrono::duration<double>(Clock::now() - due(t)).count() : 0.0;
+  return first_ ? std::chrono::duration<double>(now_() - due(t)).count() : 0.0;
 }
 
 }  // namespace edged

@@ -12,18 +12,16 @@
 namespace edged {
 
 LiveSource::LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted,
-                       std::function<void(const Measurement&)> on_due)
+                       std::function<void(const Measurement&)> on_due, Due due)
     : on_due_(std::move(on_due)),
+      clock_(due),
       thinner_(config.max_age_s),
       reader_(dataset, config, WhenFull::Drop, std::move(interrupted),
               [this](Measurement& measurement, const auto& stopped) { return pace(measurement, stopped); }) {}
 
 LiveClock::Clock::time_point LiveSource::pace(Measurement& measurement, const std::function<bool()>& stopped) {
   LiveClock::Clock::time_point due = LiveClock::Clock::now();
-  if (const auto t = last_stamp(measurement)) {
-    clock_.wait_for(*t, stopped);
-    due = clock_.due(*t);
-  }
+  if (const auto t = last_stamp(measurement)) due = clock_.wait_for(*t, stopped);
   if (on_due_ && !stopped()) on_due_(measurement);
   if (auto* batch = std::get_if<EventBatch>(&measurement)) {
     const auto oldest = std::min(due, reader_.queue().waits_since().value_or(due));

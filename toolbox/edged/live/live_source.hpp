@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording played in real time by a thread of its own, as by sensors: for a slow consumer events are thinned.
+// A recording played in real time, or sensors, read by a thread of its own: for a slow consumer events are thinned.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,11 @@ namespace edged {
 
 class LiveSource {
  public:
-  /// Plays `dataset` from now on; only the thread may use it until stop, except info(). Ends at once when `interrupted`
-  /// returns true. on_due: called by the thread with each measurement when it is due, before it is queued.
+  /// Plays `dataset` from now on, or receives what arrives; only the thread may use it until stop, except info(). Ends
+  /// at once when `interrupted` returns true. on_due: called by the thread with each measurement when it is due, before
+  /// it is queued.
   LiveSource(Dataset& dataset, const QueueConfig& config, std::function<bool()> interrupted,
-             std::function<void(const Measurement&)> on_due = {});
+             std::function<void(const Measurement&)> on_due = {}, Due due = Due::BySpeed);
 
   /// As Dataset::next, without dropped measurements; waits until the next one is due. Rethrows errors of the dataset
   /// after all measurements before them. Warns in the log when dropping begins and ends.

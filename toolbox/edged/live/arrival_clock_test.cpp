@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/autopilot/arrival_clock.hpp"
+#include "edged/live/arrival_clock.hpp"
 
 #include <gtest/gtest.h>
 
