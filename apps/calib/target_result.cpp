@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/json_text.hpp"
 #include "common/text.hpp"
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "common/imu_clock.hpp"
 #include "edged/calibrate/coverage.hpp"
 #include "edged/calibrate/rig_fit.hpp"
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/io/calibration_data.hpp"
 #include "edged/target/target.hpp"
 

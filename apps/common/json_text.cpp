@@ -4,12 +4,24 @@
 
 #include <algorithm>
 
+#include "edged/checks/found_imu_clock.hpp"
+
 namespace edged {
 
 nlohmann::ordered_json rounded(double value, int decimals) {
   if (!std::isfinite(value)) return nullptr;
   const double unit = std::pow(10.0, decimals);
   return std::round(value * unit) / unit;
+}
+
+nlohmann::ordered_json to_json(const ChosenImuClock& chosen) {
+  const ImuOffset& found = *chosen.found;
+  return {{"offset_s", to_seconds(chosen.clock.offset)},
+          {"rate", chosen.clock.rate},
+          {"offset_sigma_s", found.sigma_s},
+          {"rate_sigma", number_or_null(found.rate_sigma)},
+          {"correlation", found.match->correlation},
+          {"next_correlation", found.match->next_correlation}};
 }
 
 std::string base64(const std::vector<unsigned char>& bytes) {

@@ -11,6 +11,8 @@
 
 namespace edged {
 
+struct ChosenImuClock;
+
 /// Indented text. Bytes that are not UTF-8 are replaced, as names in recordings may contain any bytes.
 inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -34,6 +36,9 @@ nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
 
 /// A number rounded to so many decimals, to save space as text; null if it is not finite.
 nlohmann::ordered_json rounded(double value, int decimals);
+
+/// Of one that was found.
+nlohmann::ordered_json to_json(const ChosenImuClock& chosen);
 
 /// Bytes as text of 64 letters (RFC 4648).
 std::string base64(const std::vector<unsigned char>& bytes);

@@ -17,8 +17,4 @@ namespace edged {
 void read_through(Dataset& dataset, bool quiet, std::string_view what,
                   const std::function<bool(const Measurement&)>& use);
 
-/// The recorded cameras that the calibration has: those of the same name, and of each kind its first for the first.
-/// Without a recorded IMU none.
-std::vector<RigCamera> calibrated_cameras(const Recording& recording);
-
 }  // namespace edged

@@ -14,6 +14,7 @@
 #include "common/config_source.hpp"
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
+#include "common/reading.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
@@ -114,12 +115,19 @@ Recording open_again(const SourceOptions& options) {
   return recording;
 }
 
+std::optional<double> given_offset_s(const SourceOptions& options) {
+  return options.imu_time_offset.empty() ? 0.0 : given_imu_offset_s(options.imu_time_offset);
+}
+
 ChosenImuClock chosen_imu_clock(const SourceOptions& options) {
   const double rate = options.imu_clock_rate;
-  const auto seconds = options.imu_time_offset.empty() ? 0.0 : given_imu_offset_s(options.imu_time_offset);
-  if (seconds) return {{duration_from_seconds(*seconds), rate}, std::nullopt};
+  if (const auto seconds = given_offset_s(options)) return {{duration_from_seconds(*seconds), rate}, std::nullopt};
   if (const auto known = found_imu_clock(options)) return *known;
-  const ChosenImuClock found = determine_imu_clock([&] { return open_again(options); }, rate);
+  const auto read = [](Dataset& dataset, const std::function<void(const Measurement&)>& use) {
+    read_through(dataset, false, "read for the IMU's clock", [&](const Measurement& m) { return use(m), true; });
+    return interrupt_signal() == 0;
+  };
+  const ChosenImuClock found = determine_imu_clock([&] { return open_again(options); }, read, rate);
   if (found.found) options.found_clocks->insert({options.recording, found});
   return found;
 }
@@ -150,10 +158,10 @@ std::optional<SimulatorConfig> simulator_config(const SourceOptions& options) {
 
 Recording open_uncalibrated(const SourceOptions& options) {
   const bool other_clock = options.imu_clock_rate != 1.0 || !options.imu_time_offset.empty();
-  if (other_clock && is_live(options))
-    throw InputError("--imu-clock-rate and --imu-time-offset: a live source can be read once only");
   Recording recording = open_with_files(options);
-  if (other_clock) {
+  if (other_clock && is_live(options)) {
+    recording = with_live_imu_clock(std::move(recording), given_offset_s(options), options.imu_clock_rate);
+  } else if (other_clock) {
     const ImuClock clock = chosen_imu_clock(options).clock;
     recording.dataset = with_imu_clock(std::move(recording.dataset), open_again(options).dataset, clock);
   }

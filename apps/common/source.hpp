@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "common/cli.hpp"
-#include "common/imu_clock.hpp"
 #include "edged/checks/finding.hpp"
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/core/measurements/recording_piece.hpp"
 #include "edged/dataset.hpp"
 #include "edged/io/recording.hpp"

@@ -14,6 +14,7 @@
 #include "common/interrupt.hpp"
 #include "common/log.hpp"
 #include "common/reading.hpp"
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/checks/recording_check.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
 #include "edged/io/core/camera_names.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "common/imu_clock.hpp"
 #include "edged/checks/calibration_fit.hpp"
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/counters.hpp"
 #include "edged/dataset.hpp"
 #include "edged/eval/consistency.hpp"

@@ -452,14 +452,15 @@ def load_calibration(path: _Path) -> Calibration:
 def open_recording(path: _Path, rig: Calibration | _Path | None = None, topics: Mapping[str, str] = {},
                    geometry: tuple[int, int] | None = None, time_unit: Literal["s", "ms", "us", "ns"] | None = None,
                    begin_s: float | None = None, end_s: float | None = None,
-                   cameras: Sequence[str] | Literal["all", "first"] | None = None, *, imu: _Path | None = None,
+                   cameras: Sequence[str] | Literal["all", "first"] | None = None,
+                   imu_time_offset: float | Literal["auto"] | None = None, *, imu: _Path | None = None,
                    height: _Path | None = None, velocity: _Path | None = None) -> Recording:
     """A file, a folder, or tcp://HOST:PORT. rig: a calibration, its name or file. topics: of bags and AEDAT4, role or
     camera to topic. geometry: width and height of the event sensor [px], where the file does not tell. time_unit: of
     stamps in plain event files. begin_s, end_s: the piece to read, since the first stamp [s]. cameras: those to read;
     None: as `edged run`, two of a kind where their views overlap, else the first; "first": of each kind. imu, height,
-    velocity: csv or txt files of such samples, the IMU's instead of its own. Raises InputError that lists what was
-    looked for."""
+    velocity: csv or txt files of such samples, the IMU's instead of its own. imu_time_offset: seconds to add to the
+    stamps of an IMU with an epoch of its own, or "auto". Raises InputError that lists what was looked for."""
 def simulate(preset: str = "room", seed: int = 1, duration_s: float | None = None, options: Mapping[str, _Option] = {},
              begin_s: float | None = None, end_s: float | None = None,
              baseline_m: float | None = None) -> Recording:

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <variant>
 
 #include "bindings.hpp"
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/core/check.hpp"
 #include "edged/core/measurements/external_sensor.hpp"
 #include "edged/core/measurements/measurement_stamps.hpp"
@@ -45,10 +47,10 @@ std::unique_ptr<PyRecording> piece_of(Recording recording, const std::optional<d
 /// Files of sensors beside a recording, by the names of the arguments: "imu" and the external sensors.
 using SensorFiles = std::map<std::string, std::string>;
 
-Recording with_files(Recording recording, const SensorFiles& files) {
+Recording with_files(Recording recording, const SensorFiles& files, bool imu_has_own_clock) {
   for (const auto& [sensor, file] : files)
     recording.dataset = sensor == "imu"
-                            ? with_imu_file(std::move(recording.dataset), file)
+                            ? with_imu_file(std::move(recording.dataset), file, imu_has_own_clock)
                             : with_external_file(std::move(recording.dataset), *find_external_sensor(sensor), file);
   return recording;
 }
@@ -60,7 +62,7 @@ Recording open_cameras(const std::string& file, const std::optional<Calibration>
                        const RecordingOptions& options, const SensorFiles& files) {
   Recording recording = open_recording(file, calibration ? &calibration->rig : nullptr, options);
   if (calibration) recording.calibration = calibration;
-  return with_files(std::move(recording), files);
+  return with_files(std::move(recording), files, options.imu_has_own_clock);
 }
 
 /// Sets what is opened; the names of several cameras of a kind go to `chosen`.
@@ -77,6 +79,31 @@ Recording open_choice(const std::string& file, const std::optional<Calibration>&
   return open({}, std::get<std::string>(*cameras) == "all");
 }
 
+/// Of an IMU with an epoch of its own: the seconds to add to its stamps, or "auto".
+using ImuTimeOffset = std::optional<std::variant<double, std::string>>;
+
+/// All on one clock. reopen: opens it, as it is.
+Recording on_one_clock(const std::string& file, const ImuTimeOffset& offset, const std::function<Recording()>& reopen) {
+  if (!offset) return reopen();
+  const auto* number = std::get_if<double>(&*offset);
+  const auto seconds = given_imu_offset_s(number ? fmt::format("{}", *number) : std::get<std::string>(*offset));
+  if (file.starts_with(kTcpPrefix)) return with_live_imu_clock(reopen(), seconds, 1.0);
+  const auto read = [](Dataset& dataset, const std::function<void(const Measurement&)>& use) {
+    constexpr std::size_t kAsked = 1000;
+    for (std::size_t i = 0; i % kAsked != 0 || !interrupted(); ++i) {
+      const auto measurement = dataset.next();
+      if (!measurement) return true;
+      use(*measurement);
+    }
+    return false;
+  };
+  const ImuClock clock =
+      seconds ? ImuClock{duration_from_seconds(*seconds)} : determine_imu_clock(reopen, read, 1.0).clock;
+  Recording recording = reopen();
+  recording.dataset = with_imu_clock(std::move(recording.dataset), reopen().dataset, clock);
+  return recording;
+}
+
 SensorFiles given_files(const py::kwargs& files) {
   SensorFiles given;
   for (const auto& [key, file] : files) {
@@ -84,7 +111,7 @@ SensorFiles given_files(const py::kwargs& files) {
     if (sensor != "imu" && !find_external_sensor(sensor))
       throw py::type_error(fmt::format(
           "open_recording() got an unexpected keyword argument '{}'; there are rig (a calibration), topics, "
-          "geometry, time_unit, begin_s, end_s, cameras, and files of imu, height, velocity",
+          "geometry, time_unit, begin_s, end_s, cameras, imu_time_offset, and files of imu, height, velocity",
           sensor));
     if (!file.is_none()) given[sensor] = py::str(file);
   }
@@ -96,7 +123,7 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
                                   const std::optional<std::array<int, 2>>& geometry,
                                   const std::optional<std::string>& time_unit, const std::optional<double>& begin_s,
                                   const std::optional<double>& end_s, const CameraChoice& cameras,
-                                  const py::kwargs& sensor_files) {
+                                  const ImuTimeOffset& imu_time_offset, const py::kwargs& sensor_files) {
   const std::string file = py::str(path);
   std::optional<Calibration> calibration;
   if (!rig.is_none()) calibration = calibration_of(rig);
@@ -104,6 +131,7 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
   RecordingOptions options;
   options.topics = topics;
   options.own_imu = !files.contains("imu");
+  options.imu_has_own_clock = imu_time_offset.has_value();
   if (calibration) options.camera_topics = calibration->topics;
   const auto* choice = cameras ? std::get_if<std::string>(&*cameras) : nullptr;
   if (choice && *choice != "all" && *choice != "first")
@@ -116,7 +144,8 @@ std::unique_ptr<PyRecording> open(const py::object& path, const py::object& rig,
   {
     const py::gil_scoped_release free;
     std::vector<std::string> chosen;
-    opened = piece_of(open_choice(file, calibration, options, files, cameras, chosen), begin_s, end_s);
+    const auto reopen = [&] { return open_choice(file, calibration, options, files, cameras, chosen); };
+    opened = piece_of(on_one_clock(file, imu_time_offset, reopen), begin_s, end_s);
     opened->cameras = std::move(chosen);
   }
   if (PyErr_Occurred() != nullptr) throw py::error_already_set();
@@ -279,7 +308,7 @@ void bind_recording(py::module_& module) {
   module.def("open_recording", &open, py::arg("path"), py::arg("rig") = py::none(),
              py::arg("topics") = std::map<std::string, std::string>{}, py::arg("geometry") = py::none(),
              py::arg("time_unit") = py::none(), py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
-             py::arg("cameras") = py::none());
+             py::arg("cameras") = py::none(), py::arg("imu_time_offset") = py::none());
   module.def("simulate", &simulate, py::arg("preset") = "room", py::arg("seed") = 1, py::arg("duration_s") = py::none(),
              py::arg("options") = OptionValues{}, py::arg("begin_s") = py::none(), py::arg("end_s") = py::none(),
              py::arg("baseline_m") = py::none());

@@ -98,6 +98,19 @@ def test_an_imu_may_come_from_another_file(pair, tmp_path):
     assert count(edged.open_recording(pair, imu=tmp_path / "half.txt")) == (count(edged.open_recording(pair)) + 1) // 2
 
 
+def test_the_clock_of_an_imu_is_corrected(pair, tmp_path):
+    lines = [line.split(" ", 1) for line in (pair / "imu.txt").read_text().splitlines(keepends=True)]
+    (tmp_path / "ahead.txt").write_text("".join(f"{float(t) + 100:.9f} {rest}" for t, rest in lines))
+    stamps = lambda recording: [m.t for m in recording if m.kind == "imu"]
+    ahead = lambda offset: edged.open_recording(pair, imu=tmp_path / "ahead.txt", imu_time_offset=offset)
+    assert stamps(ahead(-100.0)) == stamps(edged.open_recording(pair))
+    assert len(list(edged.run(ahead(-100), "frames"))) > 5
+    with pytest.raises(edged.InputError, match="the turn rates of camera .* and gyro do not determine it"):
+        ahead("auto")
+    with pytest.raises(edged.InputError, match="give auto, or seconds"):
+        ahead("soon")
+
+
 def test_a_run_logs_what_contradicts_its_recording(pair, tmp_path, caplog):
     rows = [line.split() for line in (pair / "imu.txt").read_text().splitlines()]
     head = "t[s],ax[m/s^2],ay[m/s^2],az[m/s^2],gx[rad/s],gy[rad/s],gz[rad/s]\n"

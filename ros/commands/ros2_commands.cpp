@@ -76,7 +76,7 @@ struct Ros2Config : node::NodeConfig {
 };
 
 struct Ros2Options {
-  std::string rig, mode, distribution;
+  std::string rig, mode, imu_time_offset, distribution;
   ConfigSource config;
   Ros2Place place;
   RosArguments ros;
@@ -93,6 +93,7 @@ Ros2Config config_of(const Ros2Options& options) {
   for (const std::string& assignment : options.config.assignments) fields.set(assignment);
   if (!options.rig.empty()) fields.set("rig", options.rig);
   if (!options.mode.empty()) fields.set("mode", options.mode);
+  if (!options.imu_time_offset.empty()) fields.set("imu_time_offset", options.imu_time_offset);
   if (options.use_sim_time) config.use_sim_time = true;
   config.options.validate();
   return config;
@@ -189,6 +190,9 @@ void add_ros2_command(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* ros2 = app.add_subcommand("ros2", "Run on topics of ROS 2, without ROS: reads sensors, publishes poses");
   ros2->add_option("--rig,--calib", options->rig, "Name of a rig that ships, or a calibration file");
   ros2->add_option("--mode", options->mode, "Sensors used beside the IMU: events, frames or fused [fused]");
+  ros2->add_option("--imu-time-offset", options->imu_time_offset,
+                   "Seconds to add to the stamps of an IMU with an epoch of its own, or auto: found by the rotation of "
+                   "the first 10 s [none]");
   add_config_options(*ros2, options->config);
   add_ros2_place(*ros2, options->place, "edged");
   add_ros_arguments(*ros2, options->ros);

@@ -28,6 +28,8 @@ std::string summary(const NodeHealth& health) {
     if (input.unreadable > 0) text += fmt::format("; {}: {}", topic, input.trouble);
     if (!input.transport_trouble.empty()) text += fmt::format("; {}: {}", topic, input.transport_trouble);
   }
+  if (health.imu_clock_unknown)
+    text += "; the offset of the IMU's clock is not known: turn the camera by hand about several axes for 10 s";
   if (!health.missing_transform.empty()) text += "; " + health.missing_transform;
   if (health.newly_lost > 0) text += fmt::format("; {} measurements lost since the last report", health.newly_lost);
   if (health.newly_lost > 0 && health.dropped.events > 0)

@@ -21,12 +21,13 @@ struct NodeHealth {
   std::string reason;                           ///< what initialization waits for, or what ended the last estimate
   std::map<std::string, InputCounters> inputs;  ///< by topic
   OdometryCounters odometry;
-  DropCounters dropped;           ///< too slow for them
-  std::size_t wrong_clocks = 0;   ///< topics whose stamps run at another speed
-  std::string missing_transform;  ///< without which no pose is published; "" if none
-  std::string request;            ///< the last one, and its result; "" if none
-  std::size_t newly_lost = 0;     ///< rise of lost_measurements since the last report
-  std::optional<Duration> age;    ///< from the newest step to the newest IMU sample
+  DropCounters dropped;            ///< too slow for them
+  std::size_t wrong_clocks = 0;    ///< topics whose stamps run at another speed
+  bool imu_clock_unknown = false;  ///< its offset is searched
+  std::string missing_transform;   ///< without which no pose is published; "" if none
+  std::string request;             ///< the last one, and its result; "" if none
+  std::size_t newly_lost = 0;      ///< rise of lost_measurements since the last report
+  std::optional<Duration> age;     ///< from the newest step to the newest IMU sample
 };
 
 /// Measurements that are in no packet: unreadable, invalid, late, dropped, without room.

@@ -38,6 +38,8 @@ void Inputs::on_message(const std::string& topic, SensorInput& input, const Wire
   std::optional<Measurement> measurement = input.read(message);
   if (!measurement) return;
   const std::lock_guard lock(order_);
+  // No other clock tells what an IMU with an epoch of its own does.
+  if (imu_clock_ && std::holds_alternative<ImuSample>(*measurement)) return queue(topic, std::move(*measurement));
   for (auto& [from, passed] : stamps_.pass(topic, std::move(*measurement), input.clock(), StampClock::Clock::now()))
     queue(from, std::move(passed));
 }
@@ -46,6 +48,11 @@ void Inputs::queue(const std::string& topic, Measurement measurement) {
   if (const auto t = last_stamp(measurement)) {
     inputs_.at(topic).note_time(*t);
     if (const auto wrong = clocks_->note(topic, *t)) spdlog::warn(*wrong);
+  }
+  if (imu_clock_) {
+    std::optional<Measurement> passed = imu_clock_->pass(std::move(measurement));
+    if (!passed) return;
+    measurement = std::move(*passed);
   }
   if (const auto* sample = std::get_if<ImuSample>(&measurement)) on_imu_(*sample);
   const MeasurementQueue::Clock::time_point now = MeasurementQueue::Clock::now();
@@ -65,6 +72,10 @@ void Inputs::describe(NodeHealth& health) const {
   health.dropped = queue_.dropped();
   health.dropped.events += thinner_.dropped();
   health.wrong_clocks = clocks_->wrong();
+  {
+    const std::lock_guard lock(order_);
+    health.imu_clock_unknown = imu_clock_ && !imu_clock_->known();
+  }
   for (const auto& [topic, input] : inputs_) health.inputs.emplace(topic, input.counters());
   for (const auto& [topic, troubles] : transport_.troubles()) {
     const auto [entry, no_sensor] = health.inputs.try_emplace(topic);

@@ -10,7 +10,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "edged/checks/found_imu_clock.hpp"
 #include "edged/live/event_thinner.hpp"
 #include "edged/live/measurement_queue.hpp"
 #include "node/diagnostics.hpp"
@@ -27,6 +29,9 @@ class Inputs {
  public:
   /// on_imu: called in a thread of the transport with each sample as it arrives.
   Inputs(Transport& transport, double max_age_s, std::function<void(const ImuSample&)> on_imu);
+
+  /// For an IMU with an epoch of its own. Before start() of the transport.
+  void set_imu_clock(LiveImuClock clock) { imu_clock_.emplace(std::move(clock)); }
 
   /// Throws InputError when two sensors have one topic.
   void subscribe(const std::string& topic, Role role, const std::string& camera);
@@ -51,7 +56,8 @@ class Inputs {
   OverloadThinner thinner_;
   std::optional<ClockCheck> clocks_;
   StampClock stamps_;
-  std::mutex order_;                           ///< of measurements of a topic, which another may release
+  mutable std::mutex order_;                   ///< of measurements of a topic, which another may release
+  std::optional<LiveImuClock> imu_clock_;      ///< of one with an epoch of its own; guarded by that
   std::map<std::string, SensorInput> inputs_;  ///< by topic; not changed after start() of the transport
   std::mutex mutex_;
   std::exception_ptr failure_;  ///< the first one of a thread of the transport; guarded by the mutex

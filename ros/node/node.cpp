@@ -54,6 +54,8 @@ Node::Node(const NodeConfig& config, const Calibration& calibration, Transport& 
     inputs_.subscribe(first ? topic : camera.name + "/" + topic, events ? Role::Events : Role::Frames, camera.name);
   }
   inputs_.subscribe("imu", Role::Imu, "");
+  if (!config.imu_time_offset.empty())
+    inputs_.set_imu_clock({given_imu_offset_s(config.imu_time_offset), 1.0, used.cameras, calibration.has_extrinsics});
   for (std::size_t i = 0; i < kExternalSensors; ++i)
     inputs_.subscribe(std::string(external_sensors()[i].name), external_role(i), "");
   outputs_.publish_cameras(transport.now(), used);

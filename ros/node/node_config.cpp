@@ -19,6 +19,8 @@ void NodeConfig::visit_node(ConfigFields& fields) {
   fields.add("rig", rig, {"", 0, 0, "name of a rig that ships, or a calibration file"});
   fields.choice("mode", mode, {{"events", Mode::Events}, {"frames", Mode::Frames}, {"fused", Mode::Fused}},
                 {"", 0, 0, "which cameras beside the IMU"});
+  fields.add("imu_time_offset", imu_time_offset,
+             {"", 0, 0, "seconds to add to the stamps of an IMU with an epoch of its own, or auto: found by rotation"});
   fields.add("map_file", map_file,
              {"", 0, 0, "map of `edged run --save-map`, to relocalize in; option map.localize_only: only that"});
   fields.add("map_frame", frames.map, {"", 0, 0, "name of the map in tf and headers; corrections move odom in it"});

@@ -32,6 +32,7 @@ struct OccupancyGridConfig {
 
 struct NodeConfig {
   std::string rig;
+  std::string imu_time_offset;  ///< seconds to add to the stamps of the IMU, or "auto"; "": its clock is the others'
   Mode mode = Mode::Fused;
   std::string map_file;  ///< written by `edged run --save-map`, to relocalize in; "": none
   FrameNames frames;

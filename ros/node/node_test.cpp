@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "edged/checks/agreement/test_head.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 #include "edged/io/ros/messages/definitions.hpp"
@@ -21,6 +22,7 @@ namespace edged::node {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 NodeConfig davis_config() {
@@ -120,12 +122,10 @@ class Driver {
   void send_events(Timestamp t, int count) {
     send("events", "dvs_msgs/EventArray", event_array_message(Wire::Ros1, bag_events(t, count, 1), kBagSensor));
   }
-  void send_frame(Timestamp t) {
-    send("image", "sensor_msgs/Image", image_message(Wire::Ros1, {t, "", cv::Mat(180, 240, CV_8UC1, cv::Scalar(7))}));
-  }
-  void send_imu(Timestamp t) {
-    send("imu", "sensor_msgs/Imu", imu_message(Wire::Ros1, {t, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.81}}));
-  }
+  void send_frame(Timestamp t) { send(Frame{t, "", cv::Mat(180, 240, CV_8UC1, cv::Scalar(7))}); }
+  void send_imu(Timestamp t) { send(ImuSample{t, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.81}}); }
+  void send(const Frame& frame) { send("image", "sensor_msgs/Image", image_message(Wire::Ros1, frame)); }
+  void send(const ImuSample& sample) { send("imu", "sensor_msgs/Imu", imu_message(Wire::Ros1, sample)); }
 
  private:
   void send(const std::string& topic, const std::string& type, const std::string& bytes) {
@@ -180,6 +180,36 @@ TEST(Node, DropsNothingWhileTheOdometryWaitsForASensor) {
   });
   EXPECT_EQ(count_of(end, "events events"), 5000U);
   EXPECT_EQ(count_of(end, "events left out, too slow"), 0U);
+}
+
+TEST(Node, AnImuThatCountsFromItsOwnStartGetsItsOffset) {
+  NodeConfig config;
+  config.mode = Mode::Frames;
+  config.imu_time_offset = "auto";
+  config.max_age_s = 3600;
+  KeptTransport transport(Wire::Ros1);
+  Driver driver(transport);
+  Calibration calibration;
+  calibration.rig = {"head", {TurningHead::kCamera}};
+  Node node(config, calibration, transport);
+  TurningHead head;
+  double until_s = 0.0;
+  const auto step = [&] {
+    head.move_until(until_s += 0.5, 1000.0, [&](Measurement measurement) {
+      std::visit(
+          [&](const auto& value) {
+            using T = std::decay_t<decltype(value)>;
+            if constexpr (std::is_same_v<T, Frame> || std::is_same_v<T, ImuSample>) driver.send(value);
+          },
+          measurement);
+    });
+    return until_s >= 12.0;
+  };
+  const Diagnosis end = node.run(step);
+  EXPECT_EQ(count_of(end, "imu messages"), 2400U);
+  EXPECT_GT(count_of(end, "packets"), 40U);
+  EXPECT_EQ(count_of(end, "packets after the IMU"), 0U);
+  EXPECT_THAT(end.message, Not(HasSubstr("the offset of the IMU's clock is not known")));
 }
 
 }  // namespace

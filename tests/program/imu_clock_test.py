@@ -3,11 +3,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """--imu-time-offset: an IMU whose clock has an epoch of its own. Usage: EDGED=path/to/edged imu_clock_test.py"""
 import json
+import os
+import pathlib
+import re
 import shutil
 import unittest
 
 from program import WithFlight, edged, with_imu
 
+DATA = pathlib.Path(os.environ.get("EDGED_DATA", pathlib.Path(__file__).resolve().parents[3] / "shared/data"))
 AHEAD = 1000.25  # of the IMU's clock [s]
 
 
@@ -80,7 +84,28 @@ class ImuClock(WithFlight):
         self.assert_refused(edged("run", recording, "--imu-time-offset", "soon"), "--imu-time-offset soon", "auto, or seconds")
         (recording / "calibration.yaml").unlink()
         self.assert_refused(edged("doctor", recording, "--imu-time-offset", "auto"), "--calib")
-        self.assert_refused(edged("run", "tcp://127.0.0.1:1", "--rig", "davis240c_ecd", "--imu-time-offset", "auto"), "read once only")
+
+    @unittest.skipUnless((DATA / "euroc_mh01").exists(), "no data")
+    def test_a_real_flight_has_it_found_to_a_millisecond(self):
+        folder = self.folder / "mav0"
+        shutil.copytree(DATA / "euroc_mh01/mav0/imu0", folder / "imu0", copy_function=shutil.copyfile)
+        for part in ("cam0", "body.yaml"):
+            (folder / part).symlink_to((DATA / "euroc_mh01/mav0" / part).resolve())
+        samples = folder / "imu0/data.csv"
+        head, *rows = samples.read_text().splitlines()
+        shifted = (f"{int(t) + round(1e9 * AHEAD)},{rest}" for t, rest in (row.split(",", 1) for row in rows))
+        samples.write_text("\n".join([head, *shifted]) + "\n")
+        found = re.search(r"IMU clock: (\S+) s", edged("doctor", self.folder, "--imu-time-offset", "auto", "--quiet").stdout)
+        self.assertLess(abs(float(found.group(1)) + AHEAD), 1e-3)
+
+    @unittest.skipUnless((DATA / "formats/davis240c_imu_rotdisk.aedat").exists(), "no data")
+    def test_a_real_recording_of_a_disc_that_turns_steadily_is_refused(self):
+        recording, lens = self.folder / "disc", self.folder / "lens.yaml"
+        self.assertEqual(edged("convert", DATA / "formats/davis240c_imu_rotdisk.aedat", recording).returncode, 0)
+        samples = recording / "imu.txt"
+        samples.write_text(with_imu(lambda t, a, g: (t + AHEAD, a, g))(samples.read_text()))
+        lens.write_text((self.flight / "calibration.yaml").read_text())
+        self.assert_refused(edged("doctor", recording, "--calib", lens, "--imu-time-offset", "auto", "--quiet"), "do not determine it")
 
 
 if __name__ == "__main__":

@@ -41,12 +41,12 @@ GyroIntegral gyro_between(std::span<const ImuSample> samples, Timestamp begin, T
 /// shift: t_imu = t_camera + shift, about.
 std::vector<PieceOffset> offsets_of(std::span<const std::vector<Turn>> pieces, std::span<const ImuSample> samples,
                                     const RigCamera& camera, Duration shift) {
-  constexpr Duration kAround = std::chrono::seconds(1);  // the offsets that compare_with_gyro() tries, and more
+  constexpr Duration kAroundTurns = std::chrono::seconds(1);  // the offsets that compare_with_gyro() tries, and more
   std::vector<PieceOffset> offsets;
   for (const std::vector<Turn>& turns : pieces) {
     if (turns.empty()) continue;
     const Timestamp begin = turns.front().begin + shift, end = turns.back().end + shift;
-    const auto found = compare_with_gyro(turns, gyro_between(samples, begin - kAround, end + kAround), shift);
+    const auto found = compare_with_gyro(turns, gyro_between(samples, begin - kAroundTurns, end + kAroundTurns), shift);
     if (!found || found->at_bound || found->mirrored || found->unexplained > kLikeGyro) continue;
     if (found->time_sigma_s > kMostPieceSigma_s) continue;
     if (std::abs(std::log(std::max(found->gyro_scale, 1e-3))) > kLikeScale) continue;

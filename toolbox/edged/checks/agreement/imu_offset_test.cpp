@@ -5,37 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <functional>
 #include <random>
+
+#include "edged/checks/agreement/test_motion.hpp"
 
 namespace edged {
 namespace {
 
 using Rate = std::function<Eigen::Vector3d(double)>;  ///< angular velocity of the body [rad/s] by time [s]
-
-/// A body that is held in a hand: swings about each axis at random rates, whose sum does not repeat.
-Eigen::Vector3d uneven(double t) {
-  struct Swing {
-    double hz, phase;
-  };
-  static const std::vector<std::array<Swing, 3>> kSwings = [] {
-    std::mt19937 random(3);
-    const auto next = [&random] { return static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
-    std::vector<std::array<Swing, 3>> swings(40);
-    for (auto& axes : swings)
-      for (Swing& swing : axes) {
-        swing.hz = 0.1 + 2.0 * next();
-        swing.phase = 2 * M_PI * next();
-      }
-    return swings;
-  }();
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  for (const auto& axes : kSwings)
-    for (int k = 0; k < 3; ++k) rate[k] += 0.15 * std::sin(2 * M_PI * axes[k].hz * t + axes[k].phase);
-  return rate;
-}
 
 /// Samples at 400 Hz from `begin_s` on by the camera's clock, with stamps t_imu = t_imu_0 + rate * (t - begin_s).
 std::vector<ImuSample> samples_of(const Rate& rate, double begin_s, double end_s, double first_stamp_s,
