@@ -59,7 +59,7 @@ cv::Ptr<cv::aruco::Dictionary> tags_of(const TargetSpec& spec, std::size_t count
 }
 
 cv::Ptr<cv::aruco::DetectorParameters> tag_parameters(TargetKind kind, const cv::Mat& picture) {
-  auto parameters = cv::aruco::DetectorParameters::create();
+  auto parameters = cv::makePtr<cv::aruco::DetectorParameters>();
   parameters->markerBorderBits = border_bits(kind == TargetKind::AprilGrid);
   parameters->minMarkerPerimeterRate = 4.0 * kSmallestTag_px / std::max(picture.cols, picture.rows);
   parameters->adaptiveThreshWinSizeMax = 33;

@@ -25,7 +25,7 @@ void add_bits(TargetLayout& layout, const TargetTag& tag, bool april) {
   const auto family = tag_family(april);
   const int side = family->markerSize + 2 * border_bits(april);
   cv::Mat bits;
-  family->drawMarker(tag.id, side, bits, border_bits(april));
+  draw_marker(*family, tag.id, side, bits, border_bits(april));
   const Vector2d right = (tag.corners[1] - tag.corners[0]) / side, down = (tag.corners[3] - tag.corners[0]) / side;
   for (int row = 0; row < side; ++row)
     for (int first = 0, end = 0; first < side; first = end + 1) {
@@ -70,17 +70,17 @@ TargetLayout charuco(const TargetSpec& spec) {
   TargetLayout out;
   const double a = spec.size_m;
   out.width = spec.columns * a, out.height = spec.rows * a, out.margin = 0.5 * a;
-  const auto board = charuco_board(spec.columns, spec.rows, spec.ratio);
+  const BoardPoints board = points_of(*charuco_board(spec.columns, spec.rows, spec.ratio));
   // Versions of OpenCV differ in the direction of y. Seen from the front, a tag's corners run clockwise.
-  const auto& first = board->objPoints.at(0);
+  const auto& first = board.markers.at(0);
   const bool y_down = (first[1] - first[0]).cross(first[3] - first[0]).z > 0.0F;
   const auto place = [&](const cv::Point3f& p) {
     return Vector2d(a * p.x, y_down ? out.height - a * p.y : a * static_cast<double>(p.y));
   };
   std::vector<bool> white(static_cast<std::size_t>(spec.rows * spec.columns), false);
-  for (std::size_t i = 0; i < board->ids.size(); ++i) {
-    TargetTag tag{board->ids[i], {}};
-    for (std::size_t k = 0; k < 4; ++k) tag.corners.at(k) = place(board->objPoints[i][k]);
+  for (std::size_t i = 0; i < board.ids.size(); ++i) {
+    TargetTag tag{board.ids[i], {}};
+    for (std::size_t k = 0; k < 4; ++k) tag.corners.at(k) = place(board.markers[i][k]);
     const Vector2d middle = 0.5 * (tag.corners[0] + tag.corners[2]) / a;
     white[static_cast<std::size_t>(static_cast<int>(middle.y()) * spec.columns + static_cast<int>(middle.x()))] = true;
     add_bits(out, tag, false);
@@ -90,7 +90,7 @@ TargetLayout charuco(const TargetSpec& spec) {
     for (int column = 0; column < spec.columns; ++column)
       if (!white[static_cast<std::size_t>(row * spec.columns + column)])
         out.dark.push_back(patch(column * a, row * a, a, a));
-  for (const cv::Point3f& corner : board->chessboardCorners) out.corners.push_back(place(corner));
+  for (const cv::Point3f& corner : board.corners) out.corners.push_back(place(corner));
   return out;
 }
 

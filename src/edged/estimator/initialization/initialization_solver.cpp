@@ -253,8 +253,8 @@ std::optional<Start> InitializationSolver::linear(const Chosen& chosen, double* 
 
 std::optional<RefinedStart> InitializationSolver::refine(const Chosen& chosen, Start x, int iterations) const {
   const double bias_information = 1.0 / (biases_.accel_sigma * biases_.accel_sigma);
-  Eigen::Matrix<double, 8, 8> H;
-  Eigen::Matrix<double, 9, 8> free;
+  Eigen::Matrix<double, 8, 8> H = Eigen::Matrix<double, 8, 8>::Identity();
+  Eigen::Matrix<double, 9, 8> free = Eigen::Matrix<double, 9, 8>::Identity();
   for (int iteration = 0; iteration < iterations; ++iteration) {
     StartEquations equations;
     const std::vector<SE3> cameras = camera_poses(x);
