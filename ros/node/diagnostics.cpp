@@ -42,7 +42,7 @@ Diagnosis::Level level_of(const NodeHealth& health) {
   const bool troubled =
       std::ranges::any_of(health.inputs, [](const auto& input) { return !input.second.transport_trouble.empty(); });
   const bool fine = health.status == TrackingStatus::Good && health.newly_lost == 0 && health.wrong_clocks == 0 &&
-                    health.missing_transform.empty();
+                    health.missing_transform.empty() && !health.imu_clock_unknown;
   return fine && !troubled ? Diagnosis::Level::Ok : Diagnosis::Level::Warning;
 }
 

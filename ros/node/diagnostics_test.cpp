@@ -52,6 +52,13 @@ TEST(Diagnostics, ASilentTopicIsNamed) {
   EXPECT_THAT(diagnose(health).message, HasSubstr("nothing received on /dvs/events"));
 }
 
+TEST(Diagnostics, AnUnknownClockOfTheImuIsNamedWithTheRemedy) {
+  NodeHealth health = good();
+  health.imu_clock_unknown = true;
+  EXPECT_EQ(diagnose(health).level, Diagnosis::Level::Warning);
+  EXPECT_THAT(diagnose(health).message, HasSubstr("the offset of the IMU's clock is not known: turn the camera"));
+}
+
 TEST(Diagnostics, ATopicThatCannotComeIsNamedWithTheReason) {
   NodeHealth health = good();
   health.inputs["/imu"].transport_trouble = "a publisher is best effort";

@@ -168,7 +168,7 @@ void LiveImuClock::search(const Measurement& measurement) {
   for (ImuOffsetSearch& search : searches_) search.add(measurement);
   const auto t = first_stamp(measurement);
   if (camera_of(measurement) == nullptr || !t) return;
-  if (!searched_from_) searched_from_ = *t;
+  if (!searched_from_ || *t < *searched_from_) searched_from_ = *t;
   if (*t - *searched_from_ < kTry * (tries_ + 1)) return;
   ++tries_;
   std::string why;
