@@ -143,13 +143,13 @@ MapAlignment find_map_in(const SavedMap& map, const SavedMap& other) {
         std::ranges::count_if(hypotheses, [&](const Hypothesis& each) { return agrees(this_T_A_B, each); }));
     if (supporters > most) most = supporters, T_A_B = this_T_A_B;
   }
-  if (most >= kMapTuning.merge_keyframes &&
+  if (most >= kMapTuning.confirming &&
       static_cast<double>(most) >= kMapTuning.merge_share * static_cast<double>(hypotheses.size()))
     return {T_A_B, ""};
   return {{},
           fmt::format("{} of its {} keyframes are recognized there, {} of them at one place of the two maps to each "
                       "other; {} and {:.0f} % are needed",
-                      hypotheses.size(), keyframes, most, kMapTuning.merge_keyframes, 100.0 * kMapTuning.merge_share)};
+                      hypotheses.size(), keyframes, most, kMapTuning.confirming, 100.0 * kMapTuning.merge_share)};
 }
 
 SavedMap merged(const SavedMap& map, const SavedMap& other, const SE3& T_A_B) {

@@ -136,7 +136,7 @@ std::optional<Loop> LoopCloser::find(const MapSnapshot& now, std::span<const Pos
     if (!agree || moved_m > kMapTuning.loop_gap_m) views_.clear();
   }
   views_.push_back(*found);
-  if (views_.size() < kMapTuning.loop_images) return std::nullopt;
+  if (views_.size() < kMapTuning.confirming) return std::nullopt;
   views_.clear();
   return found->loop;
 }
