@@ -13,16 +13,14 @@ namespace edged {
 /// Decisions are those of docs/decisions.
 struct PipelineTuning {
   // Stamps (decisions 007, 008): working sensors have no such jumps and gaps.
-  Duration clock_jump = std::chrono::seconds(1);  ///< a stamp so far behind others of its sensor is of another clock
+  Duration clock_jump = std::chrono::seconds(1);  ///< stamps that are so far behind, or sensors apart: other clocks
   Duration clock_confirmation =
-      std::chrono::milliseconds(500);                ///< span of such stamps after which the clock counts as set back
-  Duration recording_gap = std::chrono::seconds(1);  ///< between the clocks of sensors that work
+      std::chrono::milliseconds(500);  ///< span of such stamps after which the clock counts as set back
   double max_gap_s = 0.2;  ///< of all sensors: no packets are cut by time inside, and the map is searched anew
-  Duration imu_history = std::chrono::seconds(20);    ///< IMU samples kept before the first packet or estimate
-  Duration max_prediction = std::chrono::seconds(1);  ///< limit of newest_state: dead reckoning soon drifts by metres
+  Duration imu_history = std::chrono::seconds(20);  ///< IMU samples kept before the first packet or estimate
   // Packets (decision 010).
   Duration synchronized = std::chrono::milliseconds(1);  ///< frames of several cameras within this belong together
-  Duration max_frame_period = std::chrono::milliseconds(500);  ///< slower frames are not waited for
+  Duration max_frame_period = std::chrono::milliseconds(500);  ///< slower frames are not waited for, nor relied on
   Duration frame_heartbeat = std::chrono::seconds(5);  ///< between packets without any frame: vision is lost before
   // Memory: far above what working sensors queue.
   std::size_t max_queued_bytes = std::size_t{256} << 20U;  ///< events and frames in the sequencer
@@ -41,7 +39,6 @@ struct PipelineTuning {
   double subsampled_width_px = 400.0;  ///< beside good frames each n-th event of sensors n times as wide is rendered
   double min_structure = 1.2;          ///< least structure of an event frame that is tracked; noise alone has 1
   double max_alignment_px = 3.0;       ///< bound of the alignment correction
-  Duration frames_missing_after = std::chrono::milliseconds(300);  ///< after it event frames keep all their features
   Duration max_depth_age =
       std::chrono::milliseconds(500);  ///< oldest depth in Eq. 5: one that is held is no measurement
   // Features of several cameras (decisions 041, 045).
@@ -57,15 +54,16 @@ struct PipelineTuning {
   // Status (decision 023).
   double strain_limit_growth = 1.5;  ///< factor on the limits of strain after each loss by it
   double max_bias_change = 3.0;      ///< [sigma]; up to 2.1 without dynamic objects
-  Duration bias_history = std::chrono::seconds(10);
-  double gyro_drift = 2e-3;       ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
-  double accel_drift = 0.02;      ///< drift of the accelerometer's bias [m/s^2]
-  double scale_memory_s = 10.0;   ///< of motion, by which the scale is judged
-  double least_travel_m = 0.15;   ///< of a shorter way the share does not matter: a fifth of it is 3 cm
-  double velocity_share = 0.1;    ///< of the speed: so uncertain may the velocity be as well
-  double unknown_velocity = 1.5;  ///< [m/s] sigma; for so long: Lost
+  double gyro_drift = 2e-3;          ///< drift of a bias with the temperature, beyond the noise of a data sheet [rad/s]
+  double accel_drift = 0.02;         ///< drift of the accelerometer's bias [m/s^2]
+  Duration judged = std::chrono::seconds(10);  ///< of biases, by their changes, and of motion, by which the scale is
+  double least_travel_m = 0.15;                ///< of a shorter way the share does not matter: a fifth of it is 3 cm
+  double velocity_share = 0.1;                 ///< of the speed: so uncertain may the velocity be as well
+  double unknown_velocity = 1.5;               ///< [m/s] sigma; for so long: Lost
   Duration velocity_unknown_after = std::chrono::milliseconds(500);  ///< cameras need up to 0.3 s after a gap
-  double longest_gap_s = 1.0;  ///< of frames and IMU; beyond it Lost: a hand or a drone may have turned by the view
+  /// Of frames and IMU; beyond it Lost: a hand or a drone may have turned by the view. newest_state predicts no
+  /// further.
+  double longest_gap_s = 1.0;
   // Localization.
   Duration covariance_interval = std::chrono::milliseconds(100);  ///< it costs a third of an optimization
   Duration dead_reckoning = std::chrono::seconds(10);             ///< after a loss of vision (decision 015)

@@ -60,7 +60,7 @@ void Packetizer::add(Measurement measurement) {
     const Timestamp first = batch->events.front().t, last = batch->events.back().t;
     // Batches of two event cameras overlap, and their boundaries are arbitrary. While IMU samples or frames arrive,
     // only these mark the progress of the stream, as their order among the events does not depend on the boundaries.
-    advance_clock(last, events_.size() > 1 ? first - kPipelineTuning.recording_gap : last - kTick);
+    advance_clock(last, events_.size() > 1 ? first - kPipelineTuning.clock_jump : last - kTick);
     add_events(*batch);
   } else if (auto* frame = std::get_if<Frame>(&measurement)) {
     advance_clock(frame->t, frames_.cameras() > 1 ? frame->t - kTick : frame->t);
@@ -89,7 +89,7 @@ void Packetizer::start_at(Timestamp t) {
   last_cut_ = heartbeat_from_ = t - kTick;
   // Another sensor is far ahead already, by another clock or a damaged stamp: no cuts by time from here to there.
   const Timestamp complete = complete_ + event_offset_;
-  if (complete - t > kPipelineTuning.recording_gap) heartbeat_from_ = complete;
+  if (complete - t > kPipelineTuning.clock_jump) heartbeat_from_ = complete;
 }
 
 void Packetizer::add_events(const EventBatch& batch) {

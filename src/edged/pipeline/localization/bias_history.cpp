@@ -10,7 +10,7 @@
 
 namespace edged {
 double BiasHistory::add(const OdomState& state, const Matrix15d& P) {
-  while (!entries_.empty() && state.t - entries_.front().t > kPipelineTuning.bias_history) entries_.pop_front();
+  while (!entries_.empty() && state.t - entries_.front().t > kPipelineTuning.judged) entries_.pop_front();
   Entry now{state.t, {}, P.diagonal().tail<6>()};
   now.bias << state.bias_gyro, state.bias_accel;
   double most = 0.0;

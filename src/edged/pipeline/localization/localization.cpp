@@ -208,7 +208,7 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
   // loss.
   if (result.new_frame) {
     session_.started_at_O = body_.now().T_O_B.translation();
-    session_.scale = ScaleUncertainty(kPipelineTuning.scale_memory_s);
+    session_.scale = ScaleUncertainty(to_seconds(kPipelineTuning.judged));
     session_.uncertainty.scale_sigma.reset();
     if (const std::optional<Matrix15d> P = session_.estimator.covariance()) take_tilt_sigma(*P);
     mapper_.restart(T_new_old, body_.now(), session_.tilt_sigma);
@@ -318,7 +318,7 @@ PlaceUncertainty::DeadReckoning Localization::in_place() const {
 PlaceUncertainty::DeadReckoning Localization::contradicted() const {
   PlaceUncertainty::DeadReckoning begin = in_place();
   begin.position = std::min((body_.now().T_O_B.translation() - session_.started_at_O).norm(),
-                            begin.velocity * to_seconds(kPipelineTuning.bias_history));
+                            begin.velocity * to_seconds(kPipelineTuning.judged));
   return begin;
 }
 

@@ -72,8 +72,8 @@ class Localization {
     ExternalCounters earlier_counters;    ///< sum over earlier sessions
     Timestamp dead_reckoning_until;       ///< before the start
     BiasHistory biases;
-    ScaleUncertainty scale{kPipelineTuning.scale_memory_s};  ///< of the present start
-    Uncertainty uncertainty = {};                            ///< as of the last covariance
+    ScaleUncertainty scale{to_seconds(kPipelineTuning.judged)};  ///< of the present start
+    Uncertainty uncertainty = {};                                ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
     double tilt_sigma = 0.0;  ///< [rad]; 0: not known

@@ -39,7 +39,7 @@ void StatePrediction::add(const ImuSample& sample) {
 void StatePrediction::follow(const ImuSample& sample) {
   imu_.push_back(sample);
   if (!states_.empty()) states_.push_back(propagated(states_.back(), std::span(imu_).last(2)));
-  if (!states_.empty() && sample.t - states_.front().t > kPipelineTuning.max_prediction) states_.clear();
+  if (!states_.empty() && to_seconds(sample.t - states_.front().t) > kPipelineTuning.longest_gap_s) states_.clear();
   if (sample.t - imu_.front().t <= 2 * kPipelineTuning.imu_history) return;
   const auto keep = std::ranges::lower_bound(imu_, sample.t - kPipelineTuning.imu_history, {}, &ImuSample::t);
   imu_.erase(imu_.begin(), keep);
@@ -49,7 +49,7 @@ void StatePrediction::correct(const std::optional<NavState>& estimate) {
   const std::lock_guard lock(mutex_);
   states_.clear();
   if (!estimate || imu_.empty() || estimate->t < imu_.front().t || estimate->t > imu_.back().t) return;
-  if (imu_.back().t - estimate->t > kPipelineTuning.max_prediction) return;
+  if (to_seconds(imu_.back().t - estimate->t) > kPipelineTuning.longest_gap_s) return;
   imu_ = slice_imu(imu_, estimate->t, imu_.back().t);
   states_ = propagate_all(as_odometry(*estimate), imu_);
 }
