@@ -142,7 +142,7 @@ void LiveImuClock::begin() {
 bool LiveImuClock::begins_again(Timestamp stamp) {
   constexpr Duration kSetBack = std::chrono::seconds(1);
   if (!last_) last_.emplace().fill(stamp);
-  std::ranges::rotate(*last_, last_->begin() + 1);
+  std::rotate(last_->begin(), last_->begin() + 1, last_->end());  // clang 14 cannot parse that of std::ranges
   last_->back() = stamp;
   const auto& [before, then, now, newest] = *last_;
   return std::min(before, then) - std::max(now, newest) > kSetBack;
