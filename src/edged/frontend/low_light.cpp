@@ -47,9 +47,9 @@ cv::Mat LowLightNormalizer::operator()(const cv::Mat& image) {
     return image;
   }
   const double wanted = std::clamp(kFrontendTuning.target_range / width, 1.0, kFrontendTuning.max_gain);
-  const bool other_light = std::max(wanted / gain_, gain_ / wanted) > 1.0 + kFrontendTuning.hold_share;
+  const bool other_light = std::max(wanted / gain_, gain_ / wanted) > kFrontendTuning.hold_gain;
   if (other_light ||
-      gain_ * std::abs(range.dark - black_) > kFrontendTuning.hold_share * kFrontendTuning.target_range) {
+      gain_ * std::abs(range.dark - black_) > kFrontendTuning.hold_black_share * kFrontendTuning.target_range) {
     gain_ = wanted;
     black_ = range.dark;
   }

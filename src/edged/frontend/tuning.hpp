@@ -41,12 +41,14 @@ struct FrontendTuning {
   double dark_share = 0.02;     ///< share of the pixels at each end that do not count
   double target_range = 160.0;  ///< between both ends after the stretch
   double max_gain = 12.0;
-  double smoothing_px = 1.0;  ///< sigma of the blur before it
-  double hold_share = 0.3;    ///< gain and black level stay until they are off by this share of gain and target range
-  double floor = 16.0;        ///< grey level of the dark end: noise below it is not clipped
+  double smoothing_px = 1.0;       ///< sigma of the blur before it
+  double hold_gain = 1.3;          ///< the gain is updated when it is off by this factor
+  double hold_black_share = 0.15;  ///< and the black level by this share of the target range
+  double floor = 16.0;             ///< grey level of the dark end: noise below it is not clipped
 
   // Reference patches (decision 011).
-  double max_area_ratio = 2.5;        ///< between a patch in the image and its reference, both ways
+  double max_area_ratio = 2.5;  ///< between a patch in the image and its reference, both ways
+  double min_depth_m = 0.05;
   double max_feature_shift_px = 1.0;  ///< from where flow or prediction have it: farther away it is another feature
   double event_lag_px = 0.3;          ///< events of an edge appear so far behind it: the pixel fires after the change
   double gradient_noise_px2 = 0.3;    ///< squared motion that shows as much scene as noise

@@ -26,17 +26,18 @@ struct MapTuning {
   double min_matched_share = 0.3;
   double gate_sigmas = 3.0;    ///< bound of a prediction: of a search, and of the drift along a loop
   double min_search_px = 2.0;  ///< radius
+  /// Median motion of the matched points since the last match. Patches that move less are off by the same amount again
+  /// (decision 027): nothing changes from 1 to 10 px.
+  double new_view_px = 3.0;
 
   // Places by appearance (decision 029).
   int max_descriptor_bits = 64;          ///< by which descriptors of one point differ, of 256
   std::size_t compared_keyframes = 100;  ///< point by point; of a larger map those with most votes of the index
-  /// Between a feature and its point at the recognized pose. Patches of matched points that have moved less since the
-  /// last match, in the median, are off by the same amount again (decision 027).
-  double agreement_px = 3.0;
-  std::size_t min_inliers = 8;    ///< that must agree with one pose
-  double min_inlier_share = 0.3;  ///< share of the features with a similar point
-  double min_ray_slope = 0.05;    ///< against the horizon, to derive a distance from a height
-  double min_upright = 0.42;      ///< sine of 25 deg: of a ray against gravity, which gives its feature a direction
+  double agreement_px = 3.0;             ///< between a feature and its point at the recognized pose
+  std::size_t min_inliers = 8;           ///< that must agree with one pose
+  double min_inlier_share = 0.3;         ///< share of the features with a similar point
+  double min_ray_slope = 0.05;           ///< against the horizon, to derive a distance from a height
+  double min_upright = 0.42;  ///< sine of 25 deg: of a ray against gravity, which gives its feature a direction
   double same_place_m = 0.1, same_place_rad = 0.05;  ///< sigmas of a recognized pose, or of a start after a loss
   double confirmed_m = 0.05, confirmed_rad = 0.02;   ///< sigmas of a pose on which several images agree
   std::size_t confirming = 3;  ///< images or keyframes that agree on a loop, or on the place of another map
@@ -46,13 +47,14 @@ struct MapTuning {
   std::size_t parents = 3;     ///< that a deactivated keyframe depends on: with one, what it shares with others is lost
   std::size_t parent_candidates = 10;  ///< for the next parent, after the first
   double cauchy_sigmas = 2.0;          ///< scale of the robust loss of map matches
-  double tilt_deg = 0.3;               ///< sigma of the odometry's roll and pitch, where it is not known; of a start
+  double tilt_deg = 0.3;               ///< sigma of the odometry's roll and pitch, where it is not known
   double least_tilt_deg = 0.05;        ///< and where it is, at least: with good IMUs
   double tilt_time_s = 10.0;           ///< after which the error of the tilt is another one
 
   // Final trajectory (decision 028).
   double final_drift_factor = 2.0;  ///< on the drift of the filter: matches on both sides bound it
   int final_iterations = 15;        ///< steps of the joint optimization, at most
+  double start_tilt_deg = 0.2;      ///< sigma of the tilt between two starts
   std::size_t joint_images =
       500;  ///< matched images that are optimized with the keyframes: time grows faster than they
 

@@ -20,7 +20,7 @@ struct PipelineTuning {
   Duration imu_history = std::chrono::seconds(20);  ///< IMU samples kept before the first packet or estimate
   // Packets (decision 010).
   Duration synchronized = std::chrono::milliseconds(1);  ///< frames of several cameras within this belong together
-  Duration max_frame_period = std::chrono::milliseconds(500);  ///< slower frames are not waited for, nor relied on
+  Duration max_frame_period = std::chrono::milliseconds(500);  ///< slower frames are not waited for
   Duration frame_heartbeat = std::chrono::seconds(5);  ///< between packets without any frame: vision is lost before
   // Memory: far above what working sensors queue.
   std::size_t max_queued_bytes = std::size_t{256} << 20U;  ///< events and frames in the sequencer
@@ -39,6 +39,7 @@ struct PipelineTuning {
   double subsampled_width_px = 400.0;  ///< beside good frames each n-th event of sensors n times as wide is rendered
   double min_structure = 1.2;          ///< least structure of an event frame that is tracked; noise alone has 1
   double max_alignment_px = 3.0;       ///< bound of the alignment correction
+  Duration frames_missing_after = std::chrono::milliseconds(300);  ///< after it event frames keep all their features
   Duration max_depth_age =
       std::chrono::milliseconds(500);  ///< oldest depth in Eq. 5: one that is held is no measurement
   // Features of several cameras (decisions 041, 045).

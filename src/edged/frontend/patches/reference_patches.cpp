@@ -28,7 +28,7 @@ void ReferencePatches::extract(const PatchView& view, std::span<const Track> tra
 /// The patch as the camera sees it now, with the feature where it is.
 std::optional<PatchPlace> ReferencePatches::place_of(const Reference& reference, const FeatureMotion& feature) const {
   const double depth = (reference.T_cur_ref.inverse() * feature.p_C).z();
-  if (!(depth > 0.0)) return std::nullopt;
+  if (!(depth > kFrontendTuning.min_depth_m)) return std::nullopt;
   std::optional<PatchPlace> place = reference.outline.seen_by(camera_, reference.T_cur_ref, depth);
   if (place) place->pixel = feature.pixel;
   return place;

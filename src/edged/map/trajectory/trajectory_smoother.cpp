@@ -17,7 +17,7 @@ constexpr double kRigid = 1e-4;  // [m], [rad]: between keyframes of another run
 
 /// Covariance of the start of the odometry, relative to its last end.
 Matrix6d start_covariance(double position_sigma, double yaw_sigma) {
-  constexpr double kTilt_rad = kMapTuning.tilt_deg * kDegree;
+  constexpr double kTilt_rad = kMapTuning.start_tilt_deg * kDegree;
   Matrix6d P = Matrix6d::Zero();
   P.diagonal().head<3>().setConstant(position_sigma * position_sigma);
   P.diagonal().tail<3>().setConstant(yaw_sigma * yaw_sigma + kTilt_rad * kTilt_rad);

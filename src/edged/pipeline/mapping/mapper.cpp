@@ -150,7 +150,7 @@ bool Mapper::same_view(double focal_px) const {
   std::vector<double> moved_px;
   for (const MapMatch& match : matches_)
     moved_px.push_back(focal_px * angle_between(T_before_M * match.p_W, T_B_M * match.p_W));
-  return median(std::move(moved_px)) < kMapTuning.agreement_px;
+  return median(std::move(moved_px)) < kMapTuning.new_view_px;
 }
 
 bool Mapper::localize(Timestamp t, std::span<const PosedImage> images, double place_sigma) {

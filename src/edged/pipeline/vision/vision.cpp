@@ -288,7 +288,7 @@ double Vision::effective_frame_tracks() const {
 }
 
 bool Vision::frames_available(Timestamp t) const {
-  return is_fused() && last_frame_ && t - *last_frame_ < kPipelineTuning.max_frame_period;
+  return is_fused() && last_frame_ && t - *last_frame_ < kPipelineTuning.frames_missing_after;
 }
 
 /// Whether frames have enough features for event frames to keep few.
