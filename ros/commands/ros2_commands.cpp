@@ -140,7 +140,9 @@ struct PlayOptions {
 
 void wait_for_subscribers(const ros2::Player& player, StatusLine& status) {
   constexpr auto kGrace = std::chrono::milliseconds(500);  // the other topics of the subscriber follow
-  for (std::string topic; !(topic = player.unsubscribed()).empty() && interrupt_signal() == 0;) {
+  while (interrupt_signal() == 0) {
+    const std::string topic = player.unsubscribed();
+    if (topic.empty()) break;
     if (status.due()) status.show(fmt::format("waiting for a subscriber to {} (-r renames topics)", topic));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

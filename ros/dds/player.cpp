@@ -73,10 +73,10 @@ void Player::add_topic(const std::string& topic, std::string_view type) {
 
 std::string Player::unsubscribed() const {
   const auto imu = writers_.find("imu");
-  const bool any = imu == writers_.end()
-                       ? std::ranges::any_of(writers_, [](const auto& w) { return w.second.readers() > 0; })
-                       : imu->second.readers() > 0;
-  return any ? "" : setup_.names->full_name((imu == writers_.end() ? writers_.begin() : imu)->first);
+  const auto asked = imu == writers_.end() ? writers_.begin() : imu;
+  const auto is_read = [](const auto& writer) { return writer.second.readers() > 0; };
+  const bool read = is_read(*asked) || (imu == writers_.end() && std::ranges::any_of(writers_, is_read));
+  return read ? "" : setup_.names->full_name(asked->first);
 }
 
 PlayCounters Player::play(Dataset& dataset, const std::function<bool()>& stop,

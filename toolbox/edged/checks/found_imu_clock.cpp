@@ -182,8 +182,7 @@ void LiveImuClock::search(const Measurement& measurement) {
       why += fmt::format("; camera {}: {}", cameras_[i].name, why_undetermined(found));
     }
   }
-  if (offset_) searches_.clear();
-  if (offset_) return;
+  if (offset_) return searches_.clear();
   spdlog::warn(
       fmt::format("the turn rates of camera and gyro do not determine the IMU's clock yet: turn the camera by "
                   "hand about several axes for 10 s{}",

@@ -16,8 +16,8 @@ LiveClock::Clock::time_point LiveClock::wait_for(Timestamp t, const std::functio
     arrivals_.arrived(t, now.time_since_epoch());
     return now;
   }
-  while (Clock::now() < due(t) && !stopped())
-    std::this_thread::sleep_for(std::min<Clock::duration>(due(t) - Clock::now(), kLongestSleep));
+  while (now_() < due(t) && !stopped())
+    std::this_thread::sleep_for(std::min<Clock::duration>(due(t) - now_(), kLongestSleep));
   return due(t);
 }
 

@@ -39,15 +39,13 @@ cv::Mat details_of(const cv::Mat& image) {
   return cells - areas;
 }
 
-/// Correlations with b moved by -kMostMoved to kMostMoved cells.
-cv::Mat shifted_correlations(const cv::Mat& a, const cv::Mat& b) {
+/// Products of a with b moved by -kMostMoved to kMostMoved cells.
+cv::Mat shifted_products(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat wider, products;
   cv::copyMakeBorder(a, wider, kMostMoved, kMostMoved, kMostMoved, kMostMoved, cv::BORDER_CONSTANT, 0.0);
   cv::matchTemplate(wider, b, products, cv::TM_CCORR);
-  return products / std::max(cv::norm(a) * cv::norm(b), 1e-9);
+  return products;
 }
-
-double correlation(const cv::Mat& a, const cv::Mat& b) { return a.dot(b) / std::max(cv::norm(a) * cv::norm(b), 1e-9); }
 
 }  // namespace
 
@@ -58,6 +56,7 @@ EventAgreement::EventAgreement(std::span<const RigCamera> cameras) {
   events_ = *events;
   frames_ = frames->name;
   counts_ = cv::Mat::zeros(events->model.height(), events->model.width(), CV_32F);
+  shifted_ = cv::Mat::zeros(2 * kMostMoved + 1, 2 * kMostMoved + 1, CV_32F);
 }
 
 void EventAgreement::add(const Measurement& measurement) {
@@ -88,15 +87,13 @@ void EventAgreement::compare(const Frame& frame) {
   cv::Sobel(frame.image, dy, CV_32F, 0, 1);
   cv::magnitude(dx, dy, slopes);
   const cv::Mat edges = details_of(slopes), events = details_of(counts_);
-  correlations_[0] += correlation(edges, events);
+  const double norm = std::max(cv::norm(edges) * cv::norm(events), 1e-9);  // of any change
+  correlations_[0] += edges.dot(events) / norm;
   for (std::size_t i = 0; i < std::size(kChanges); ++i) {
     cv::flip(events, changed, kChanges[i].flip);
-    correlations_.at(i + 1) += correlation(edges, changed);
+    correlations_.at(i + 1) += edges.dot(changed) / norm;
   }
-  if (shifted_.empty())
-    shifted_ = shifted_correlations(edges, events);
-  else
-    shifted_ += shifted_correlations(edges, events);
+  shifted_ += shifted_products(edges, events) / norm;
   ++compared_;
   due_ = frame.t + kBetweenPictures;
   counts_.setTo(0.0F);

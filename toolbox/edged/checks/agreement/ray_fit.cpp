@@ -16,8 +16,6 @@ namespace {
 
 constexpr int kParameters = 8;  // rotation, shift, bias, ln of the gyro's scale
 constexpr int kShiftAt = 3;
-constexpr std::size_t kTimeBlocks = 10;   // of time, for the jackknife
-constexpr std::size_t kFewestToFit = 30;  // turns
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Information = Eigen::Matrix<double, kParameters, kParameters>;
 
@@ -32,17 +30,12 @@ struct TurnTerms {
 
 /// spread: the scale of the Cauchy loss of the errors.
 TurnTerms terms_of(const Turn& turn, const Eigen::Matrix3d& R, double spread) {
-  const Eigen::Vector3d t = epipolar_direction(turn, R, spread), a = t.unitOrthogonal(), b = t.cross(a);
+  const EpipolarErrors epipolar(turn, R, spread);
   Eigen::Matrix<double, 5, 5> H = 1e-12 * Eigen::Matrix<double, 5, 5>::Identity();
   Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
   TurnTerms terms;
   for (const auto& [from, to] : turn.rays) {
-    const Eigen::Vector3d n = from.cross(R * to);
-    const double error = n.dot(t);
-    // t . (from x R (step x to)) = step . (to x R^T (t x from))
-    const Eigen::Vector3d by_turn = to.cross(R.transpose() * t.cross(from));
-    Eigen::Matrix<double, 5, 1> J;
-    J << by_turn, n.dot(a), n.dot(b);
+    const auto [error, J] = epipolar.of(from, to);
     const double squared = std::pow(error / spread, 2), weight = 1.0 / (1.0 + squared);
     terms.loss += std::log1p(squared);
     H += weight * J * J.transpose();
@@ -214,23 +207,32 @@ void fit_scale(std::span<const Turn> turns, const GyroIntegral& gyro, double spr
 
 }  // namespace
 
-Eigen::Vector3d epipolar_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread) {
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+EpipolarErrors::EpipolarErrors(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread)
+    : R_(R_begin_end), t_(Eigen::Vector3d::Zero()) {
   for (int round = 0; round < 3; ++round) {
     Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
     for (const auto& [from, to] : turn.rays) {
-      const Eigen::Vector3d n = from.cross(R_begin_end * to);
-      M += n * n.transpose() / (1.0 + (round > 0 ? std::pow(n.dot(t) / spread, 2) : 0.0));
+      const Eigen::Vector3d n = from.cross(R_ * to);
+      M += n * n.transpose() / (1.0 + (round > 0 ? std::pow(n.dot(t_) / spread, 2) : 0.0));
     }
-    t = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
+    t_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(M).eigenvectors().col(0);
   }
-  return t;
+  a_ = t_.unitOrthogonal();
+  b_ = t_.cross(a_);
+}
+
+EpipolarErrors::Error EpipolarErrors::of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const Eigen::Vector3d n = from.cross(R_ * to);
+  Error error{n.dot(t_), {}};
+  // t . (from x R (step x to)) = step . (to x R^T (t x from))
+  error.J << to.cross(R_.transpose() * t_.cross(from)), n.dot(a_), n.dot(b_);
+  return error;
 }
 
 Eigen::Vector3d translation_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end) {
   constexpr double kSpread = 1e-3;  // [rad]
   constexpr double kAgree = 0.6;    // least share of agreeing corners minus contradicting ones: points lie in front
-  const Eigen::Vector3d t = epipolar_direction(turn, R_begin_end, kSpread);
+  const Eigen::Vector3d t = EpipolarErrors(turn, R_begin_end, kSpread).t();
   double votes = 0.0;
   for (const auto& [from, to] : turn.rays) votes += (from - R_begin_end * to).dot(t) > 0.0 ? 1.0 : -1.0;
   if (std::abs(votes) < kAgree * static_cast<double>(turn.rays.size())) return Eigen::Vector3d::Zero();
@@ -246,7 +248,7 @@ std::optional<RayFit> fit_rays(std::span<const Turn> turns, const GyroIntegral& 
   Sums sums;
   for (int round = 0;; ++round) {
     sums = sums_at(turns, gyro, fit.mount, spread);
-    if (sums.turns < kFewestToFit) return std::nullopt;
+    if (sums.turns < kFewestTurnsToFit) return std::nullopt;
     spread = std::max(1.4826 * 2 * median(sums.errors), kLeastSpread);
     if (round == kRounds) break;
     const Normal all = with_prior(sums.total(), fit.mount, spread * spread / 4, kHeld);

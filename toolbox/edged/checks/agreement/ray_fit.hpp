@@ -30,9 +30,30 @@ struct RayFit {
   double scale_unexplained = 1.0;  ///< unexplained share with mount.gyro_scale; the other results assume a scale of 1
 };
 
-/// The direction of translation, of either sign, that fits the rays best. spread: the scale of the Cauchy loss of their
-/// errors [rad].
-Eigen::Vector3d epipolar_direction(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread);
+inline constexpr std::size_t kTimeBlocks = 10;        ///< of a recording, for the jackknife
+inline constexpr std::size_t kFewestTurnsToFit = 30;  ///< of a recording
+
+/// The epipolar errors of the corners of a turn, for one rotation and the direction of translation that fits best.
+class EpipolarErrors {
+ public:
+  /// The error of a corner [rad], and its derivatives with respect to step in R_begin_end * Exp(step) and to two
+  /// directions in which the translation may turn.
+  struct Error {
+    double value;
+    Eigen::Matrix<double, 5, 1> J;
+  };
+
+  /// spread: the scale of the Cauchy loss of the errors.
+  EpipolarErrors(const Turn& turn, const Eigen::Matrix3d& R_begin_end, double spread);
+
+  Error of(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  /// Unit vector of the translation, of either sign.
+  const Eigen::Vector3d& t() const { return t_; }
+
+ private:
+  Eigen::Matrix3d R_;
+  Eigen::Vector3d t_, a_, b_;
+};
 
 /// The unit direction of the translation during a rotation, in the camera axes at its begin. R: rotation from end to
 /// begin. Zero if the corners do not determine it.

@@ -13,8 +13,7 @@
 namespace edged {
 namespace {
 
-constexpr std::size_t kReadoutBlocks = 10;  // of time, for the jackknife
-constexpr std::size_t kFewestReadTurns = 30, kFewestReadRays = 12;
+constexpr std::size_t kFewestReadRays = 12;
 
 /// A turn, and what the gyro says of it, in the axes of the camera.
 struct TurnOfRows {
@@ -71,18 +70,16 @@ struct RowTerms {
 
 RowTerms row_terms_of(const TurnOfRows& of, double readout_s, double spread, std::vector<double>& errors) {
   const Turn turn = unrolled(of, readout_s);
-  const Eigen::Vector3d t = epipolar_direction(turn, of.R, spread), a = t.unitOrthogonal(), b = t.cross(a);
+  const EpipolarErrors epipolar(turn, of.R, spread);
   Eigen::Matrix<double, 6, 6> H = 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
   for (std::size_t i = 0; i < turn.rays.size(); ++i) {
     const auto& [from, to] = turn.rays[i];
-    const Eigen::Vector3d n = from.cross(of.R * to);
-    const double error = n.dot(t);
+    const auto [error, by_others] = epipolar.of(from, to);
     const Eigen::Vector3d from_slope = of.rows[i].first * of.rate_begin.cross(from);
     const Eigen::Vector3d to_slope = of.rows[i].second * of.rate_end.cross(to);
     Eigen::Matrix<double, 6, 1> J;
-    J << to.cross(of.R.transpose() * t.cross(from)), n.dot(a), n.dot(b),
-        t.dot(from_slope.cross(of.R * to) + from.cross(of.R * to_slope));
+    J << by_others, epipolar.t().dot(from_slope.cross(of.R * to) + from.cross(of.R * to_slope));
     const double weight = 1.0 / (1.0 + std::pow(error / spread, 2));
     H += weight * J * J.transpose();
     g -= weight * error * J;
@@ -100,10 +97,10 @@ std::optional<Readout> readout_of(std::span<const Turn> turns, const GyroIntegra
   constexpr int kRounds = 6;
   constexpr double kFirstSpread = 2e-3, kLeastSpread = 1e-4;  // [rad]
   const std::vector<TurnOfRows> all = with_rows(turns, gyro, camera, agreement);
-  if (all.size() < kFewestReadTurns) return std::nullopt;
+  if (all.size() < kFewestTurnsToFit) return std::nullopt;
   Readout found;
   double spread = kFirstSpread;
-  std::array<RowTerms, kReadoutBlocks> blocks;
+  std::array<RowTerms, kTimeBlocks> blocks;
   RowTerms sum;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<double> errors;
@@ -111,7 +108,7 @@ std::optional<Readout> readout_of(std::span<const Turn> turns, const GyroIntegra
     sum = {};
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto [h, g] = row_terms_of(all[i], found.s, spread, errors);
-      RowTerms& block = blocks[i * kReadoutBlocks / all.size()];
+      RowTerms& block = blocks[i * kTimeBlocks / all.size()];
       block.h += h, block.g += g, sum.h += h, sum.g += g;
     }
     if (!(sum.h > 0.0)) return std::nullopt;
@@ -120,7 +117,7 @@ std::optional<Readout> readout_of(std::span<const Turn> turns, const GyroIntegra
   }
   double squares = 0.0;  // by leaving out a tenth at a time, as corners are correlated over seconds
   for (const RowTerms& block : blocks) squares += std::pow((sum.g - block.g) / (sum.h - block.h) - sum.g / sum.h, 2);
-  found.sigma_s = std::sqrt((kReadoutBlocks - 1.0) / kReadoutBlocks * squares);
+  found.sigma_s = std::sqrt((kTimeBlocks - 1.0) / kTimeBlocks * squares);
   return found;
 }
 
