@@ -193,6 +193,10 @@ class Verdict(WithFlight):
         self.assertLess(abs(found["time_offset_ms"] - found["given_time_offset_ms"]), 3 * found["time_offset_sigma_ms"])
         self.assertFalse([f for f in metrics["findings"] if "differs from the calibration" in f["text"]])
 
+    def test_weak_rotation_makes_no_shutter_a_rolling_one(self):
+        _, metrics = self.run_it("sim:room:7:duration_s=120", "frames", "--duration", 8)
+        self.assertEqual(metrics["findings"], [])
+
     def test_a_focal_length_3_percent_off_is_told_with_what_to_do(self):
         def longer(match):
             fx, fy, rest = match.group(1, 2, 3)

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "edged/checks/agreement/ray_fit.hpp"
@@ -63,9 +64,14 @@ Turn unrolled(const TurnOfRows& of, double readout_s) {
   return turn;
 }
 
-/// Cost ~ h step^2 / 2 - g step for a step of the readout, with rotation and translation of the turn free.
+/// The cost with rotation and translation of each turn free: loss + h step^2 / 2 - g step for a step of the readout.
 struct RowTerms {
-  double h = 0.0, g = 0.0;
+  double h = 0.0, g = 0.0, loss = 0.0;
+
+  RowTerms& operator+=(const RowTerms& other) {
+    h += other.h, g += other.g, loss += other.loss;
+    return *this;
+  }
 };
 
 RowTerms row_terms_of(const TurnOfRows& of, double readout_s, double spread, std::vector<double>& errors) {
@@ -73,6 +79,7 @@ RowTerms row_terms_of(const TurnOfRows& of, double readout_s, double spread, std
   const EpipolarErrors epipolar(turn, of.R, spread);
   Eigen::Matrix<double, 6, 6> H = 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  double loss = 0.0;
   for (std::size_t i = 0; i < turn.rays.size(); ++i) {
     const auto& [from, to] = turn.rays[i];
     const auto [error, by_others] = epipolar.of(from, to);
@@ -81,13 +88,29 @@ RowTerms row_terms_of(const TurnOfRows& of, double readout_s, double spread, std
     Eigen::Matrix<double, 6, 1> J;
     J << by_others, epipolar.t().dot(from_slope.cross(of.R * to) + from.cross(of.R * to_slope));
     const double weight = 1.0 / (1.0 + std::pow(error / spread, 2));
+    loss += -0.5 * std::log(weight) * spread * spread;
     H += weight * J * J.transpose();
     g -= weight * error * J;
     errors.push_back(std::abs(error));
   }
   const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> others(H.topLeftCorner<5, 5>());
-  const Eigen::Matrix<double, 5, 1> cross = H.topRightCorner<5, 1>();
-  return {H(5, 5) - cross.dot(others.solve(cross)), g[5] - cross.dot(others.solve(g.head<5>()))};
+  const Eigen::Matrix<double, 5, 1> step = others.solve(g.head<5>()), cross = H.topRightCorner<5, 1>();
+  return {H(5, 5) - cross.dot(others.solve(cross)), g[5] - cross.dot(step), loss - 0.5 * g.head<5>().dot(step)};
+}
+
+/// The tenths of the recording.
+using Tenths = std::array<RowTerms, kTimeBlocks>;
+
+Tenths tenths_at(std::span<const TurnOfRows> turns, double readout_s, double spread, std::vector<double>& errors) {
+  Tenths tenths;
+  for (std::size_t i = 0; i < turns.size(); ++i)
+    tenths[i * kTimeBlocks / turns.size()] += row_terms_of(turns[i], readout_s, spread, errors);
+  return tenths;
+}
+
+RowTerms sum_of(const Tenths& tenths) {
+  return std::accumulate(tenths.begin(), tenths.end(), RowTerms(),
+                         [](RowTerms a, const RowTerms& b) { return a += b; });
 }
 
 }  // namespace
@@ -100,24 +123,22 @@ std::optional<Readout> readout_of(std::span<const Turn> turns, const GyroIntegra
   if (all.size() < kFewestTurnsToFit) return std::nullopt;
   Readout found;
   double spread = kFirstSpread;
-  std::array<RowTerms, kTimeBlocks> blocks;
+  Tenths tenths;
   RowTerms sum;
   for (int round = 0; round < kRounds; ++round) {
     std::vector<double> errors;
-    blocks = {};
-    sum = {};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const auto [h, g] = row_terms_of(all[i], found.s, spread, errors);
-      RowTerms& block = blocks[i * kTimeBlocks / all.size()];
-      block.h += h, block.g += g, sum.h += h, sum.g += g;
-    }
+    tenths = tenths_at(all, found.s, spread, errors);
+    sum = sum_of(tenths);
     if (!(sum.h > 0.0)) return std::nullopt;
     found.s += std::clamp(sum.g / sum.h, -0.02, 0.02);
-    spread = std::max(1.4826 * 2 * median(errors), kLeastSpread);
+    if (round + 1 < kRounds) spread = std::max(1.4826 * 2 * median(errors), kLeastSpread);
   }
   double squares = 0.0;  // by leaving out a tenth at a time, as corners are correlated over seconds
-  for (const RowTerms& block : blocks) squares += std::pow((sum.g - block.g) / (sum.h - block.h) - sum.g / sum.h, 2);
+  for (const RowTerms& tenth : tenths) squares += std::pow((sum.g - tenth.g) / (sum.h - tenth.h) - sum.g / sum.h, 2);
   found.sigma_s = std::sqrt((kTimeBlocks - 1.0) / kTimeBlocks * squares);
+  std::vector<double> unused;
+  // With weak rotation the steps may end where the rays fit worse than without a readout.
+  if (sum.loss > sum_of(tenths_at(all, 0.0, spread, unused)).loss) return std::nullopt;
   return found;
 }
 
