@@ -80,16 +80,22 @@ Failure usage_failure(const CLI::App& app, const CLI::ParseError& error) {
   return {kExitUsage, "usage", fmt::format("{}; {}", error.what(), see)};
 }
 
-/// Bounds do not refuse "nan", and one side of them "inf".
-void refuse_infinite_numbers(CLI::App& app) {
-  for (CLI::Option* option : app.get_options())
-    if (option->get_type_name().starts_with("FLOAT"))
-      option->check([](const std::string& text) {
-        double value = 0.0;
-        const bool infinite = CLI::detail::lexical_cast(text, value) && !std::isfinite(value);
-        return infinite ? fmt::format("'{}' is not a finite number", text) : "";
-      });
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuse_infinite_numbers(*command);
+/// What the parser takes for a value: another option, "nan" despite bounds, and on one side of them "inf".
+void refuse_odd_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    option->check([&app](const std::string& text) {
+      const bool is_option = text.starts_with("--") && app.get_option_no_throw(text) != nullptr;
+      return is_option ? fmt::format("a value is missing before {}", text) : "";
+    });
+    if (!option->get_type_name().starts_with("FLOAT")) continue;
+    option->check([](const std::string& text) {
+      double value = 0.0;
+      const bool infinite = CLI::detail::lexical_cast(text, value) && !std::isfinite(value);
+      return infinite ? fmt::format("'{}' is not a finite number", text) : "";
+    });
+  }
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) refuse_odd_values(*command);
 }
 
 /// A folder without permission, a name that is too long, a full disk: no bugs of ours.
@@ -128,7 +134,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     cv::setNumThreads(
         1);  // one packet is too little work for several threads, and one thread keeps results reproducible
     start_logging();
-    refuse_infinite_numbers(app);
+    refuse_odd_values(app);
     app.parse(argc, argv);
     const int code = run();
     end_output();

@@ -76,6 +76,9 @@ class Run(WithFlight):
                       ["--occupancy", "x", "--occupancy-heights", "0", "inf"]):
             self.assert_refused(edged("run", self.flight, *flags), "is not a finite number", code=2)
 
+    def test_an_option_without_its_value_takes_no_other_for_it(self):
+        self.assert_refused(edged("run", self.flight, "--occupancy", "--dense", "x"), "a value is missing before --dense", code=2)
+
     def test_a_simulation_takes_options_of_the_simulator(self):
         run = edged("run", "sim:room:3:duration_s=2,frames.rate_hz=10", "--json", "--quiet", "--out", self.folder / "run")
         metrics = json.loads(run.stdout)
