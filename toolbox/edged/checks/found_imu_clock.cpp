@@ -118,7 +118,9 @@ std::optional<double> given_imu_offset_s(const std::string& text) {
 
 LiveImuClock::LiveImuClock(std::optional<double> offset_s, double rate, std::span<const RigCamera> cameras,
                            bool has_extrinsics)
-    : given_(offset_s), rate_(rate), has_extrinsics_(has_extrinsics) {
+    : rate_(rate),
+      has_extrinsics_(has_extrinsics),
+      given_(offset_s ? std::optional(duration_from_seconds(*offset_s)) : std::nullopt) {
   for (const Modality modality : {Modality::Frames, Modality::Events}) {
     const auto first = std::ranges::find(cameras, modality, &RigCamera::modality);
     if (first != cameras.end()) cameras_.push_back(*first);
@@ -126,11 +128,11 @@ LiveImuClock::LiveImuClock(std::optional<double> offset_s, double rate, std::spa
   if (!given_ && cameras_.empty())
     throw InputError("--imu-time-offset auto needs an IMU, and the lens of a camera: give --calib or --rig");
   begin();
-  if (given_) offset_ = duration_from_seconds(*offset_s);
 }
 
 void LiveImuClock::begin() {
-  offset_.reset();
+  line_.reset();
+  drift_.reset();
   first_.reset();
   searched_from_.reset();
   tries_ = 0;
@@ -154,12 +156,15 @@ std::optional<Measurement> LiveImuClock::pass(Measurement measurement) {
       spdlog::warn("the IMU's clock has begun again: its offset is searched again");
       begin();
     }
-    if (!first_) first_ = sample->t;
-    sample->t = ImuClock{offset_.value_or(Duration(0)), rate_}.corrected(sample->t, *first_);
-    if (offset_) return measurement;
+    if (!first_) {
+      first_ = sample->t;
+      if (given_) line_ = line_by(*given_);
+    }
+    sample->t = line_.value_or(line_by(Duration(0))).at(sample->t);
   }
-  if (!offset_) search(measurement);
-  return offset_ ? std::optional(std::move(measurement)) : std::nullopt;
+  if (!known()) search(measurement);
+  if (drift_) drift_->add(measurement, *line_);
+  return known() ? std::optional(std::move(measurement)) : std::nullopt;
 }
 
 void LiveImuClock::search(const Measurement& measurement) {
@@ -172,17 +177,18 @@ void LiveImuClock::search(const Measurement& measurement) {
   if (*t - *searched_from_ < kTry * (tries_ + 1)) return;
   ++tries_;
   std::string why;
-  for (std::size_t i = 0; i < searches_.size() && !offset_; ++i) {
+  for (std::size_t i = 0; i < searches_.size() && !line_; ++i) {
     const ImuOffset found = searches_[i].result();
     if (found.determined()) {
-      offset_ = found.offset;
-      spdlog::info(fmt::format("IMU clock: {} added to its stamps, {}", offset_text({{*offset_, rate_}, found}),
+      line_ = line_by(found.offset);
+      drift_.emplace(cameras_[i], found.sigma_s);
+      spdlog::info(fmt::format("IMU clock: {} added to its stamps, {}", offset_text({{found.offset, rate_}, found}),
                                offset_evidence(found)));
     } else {
       why += fmt::format("; camera {}: {}", cameras_[i].name, why_undetermined(found));
     }
   }
-  if (offset_) return searches_.clear();
+  if (line_) return searches_.clear();
   spdlog::warn(
       fmt::format("the turn rates of camera and gyro do not determine the IMU's clock yet: turn the camera by "
                   "hand about several axes for 10 s{}",

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "edged/checks/agreement/imu_drift.hpp"
 #include "edged/checks/agreement/imu_offset.hpp"
 #include "edged/input_error.hpp"
 #include "edged/io/core/replaced_streams.hpp"
@@ -48,8 +49,8 @@ InputError undetermined_offset(const std::string& recording, const std::string& 
 std::optional<double> given_imu_offset_s(const std::string& text);
 
 /// For measurements that arrive live and are seen once. Where the offset is not given, the rotation of the first 10 s
-/// determines it, else that of the next: nothing is passed on until then. An IMU that begins to count again is searched
-/// again. Says in the log what is found, and why nothing is.
+/// determines it, else that of the next: nothing is passed on until then; then its drift is followed. An IMU that
+/// begins to count again is searched again. Says in the log what is found, and why nothing is.
 class LiveImuClock {
  public:
   /// offset_s: nothing if it is to be found, by the first of these cameras of each kind, frames before events.
@@ -58,19 +59,21 @@ class LiveImuClock {
 
   /// The measurement, on one clock; nothing while the offset is not known. Those of a sensor in their order.
   std::optional<Measurement> pass(Measurement measurement);
-  bool known() const { return offset_.has_value(); }
+  bool known() const { return given_ || line_; }
 
  private:
   bool begins_again(Timestamp stamp);
+  ClockLine line_by(Duration offset) const { return {*first_, *first_ + offset, 1.0 / rate_}; }
   void begin();
   void search(const Measurement& measurement);
 
-  const bool given_;
   const double rate_;
   std::vector<RigCamera> cameras_;
   const bool has_extrinsics_;
-  std::optional<Duration> offset_;
-  std::vector<ImuOffsetSearch> searches_;         ///< one a camera; none while the offset is known
+  const std::optional<Duration> given_;  ///< offset
+  std::optional<ClockLine> line_;
+  std::optional<ImuDrift> drift_;                 ///< of a line that was found
+  std::vector<ImuOffsetSearch> searches_;         ///< one a camera; none while the line is known
   std::optional<Timestamp> searched_from_;        ///< by the cameras
   int tries_ = 0;                                 ///< since then
   std::optional<Timestamp> first_;                ///< of the IMU

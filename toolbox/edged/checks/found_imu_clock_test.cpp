@@ -66,6 +66,27 @@ TEST(LiveImuClock, ADamagedStampIsNoBeginning) {
   EXPECT_TRUE(clock.known());
 }
 
+TEST(LiveImuClock, FollowsItsDriftWithoutAJump) {
+  constexpr double kDrift = 5e-5, kAhead_s = 1000.0;
+  TurningHead head;
+  LiveImuClock clock(std::nullopt, 1.0, {&TurningHead::kCamera, 1}, true);
+  double worst_s = 0.0;
+  Timestamp before = timestamp_from_seconds(10.0);
+  head.move_until(400.0, 0.0, [&](Measurement measurement) {
+    const double true_s = to_seconds(*first_stamp(measurement));
+    if (auto* sample = std::get_if<ImuSample>(&measurement))
+      sample->t = timestamp_from_seconds(kAhead_s + (1.0 + kDrift) * true_s);
+    const auto passed = clock.pass(std::move(measurement));
+    if (!passed || !std::holds_alternative<ImuSample>(*passed)) return;
+    const Timestamp t = *first_stamp(*passed);
+    EXPECT_NEAR(to_seconds(t - before), 5e-3, before == timestamp_from_seconds(10.0) ? 6e-3 : 1e-5);
+    before = t;
+    worst_s = std::max(worst_s, std::abs(to_seconds(t) - true_s));
+  });
+  EXPECT_LT(worst_s, 4.5e-3) << "20 ms without";
+  EXPECT_NEAR(to_seconds(before), 399.995, 1e-3);
+}
+
 TEST(LiveImuClock, AddsGivenSecondsFromTheFirstSampleOn) {
   LiveImuClock clock(-100.0, 1.5, {}, false);
   for (const double t : {0.0, 2.0}) {

@@ -23,38 +23,12 @@ constexpr double kLeastPieceSigma_s =
     3e-4;                           // of the offset in a piece: turns share errors that their scatter does not show
 constexpr double kSureDrift = 3.0;  // sigmas from none
 
-/// The offset in one piece of the recording.
-struct PieceOffset {
-  double t_s;  ///< of the IMU from its first sample on
-  double x_s;  ///< what is to be added to its stamps
-  double sigma_s;
-};
-
 GyroIntegral gyro_between(std::span<const ImuSample> samples, Timestamp begin, Timestamp end) {
   GyroIntegral gyro;
   const auto last = std::ranges::lower_bound(samples, end, {}, &ImuSample::t);
   for (auto sample = std::ranges::lower_bound(samples, begin, {}, &ImuSample::t); sample != last; ++sample)
     gyro.add(*sample);
   return gyro;
-}
-
-/// shift: t_imu = t_camera + shift, about.
-std::vector<PieceOffset> offsets_of(std::span<const std::vector<Turn>> pieces, std::span<const ImuSample> samples,
-                                    const RigCamera& camera, Duration shift) {
-  constexpr Duration kAroundTurns = std::chrono::seconds(1);  // the offsets that compare_with_gyro() tries, and more
-  std::vector<PieceOffset> offsets;
-  for (const std::vector<Turn>& turns : pieces) {
-    if (turns.empty()) continue;
-    const Timestamp begin = turns.front().begin + shift, end = turns.back().end + shift;
-    const auto found = compare_with_gyro(turns, gyro_between(samples, begin - kAroundTurns, end + kAroundTurns), shift);
-    if (!found || found->at_bound || found->mirrored || found->unexplained > kLikeGyro) continue;
-    if (found->time_sigma_s > kMostPieceSigma_s) continue;
-    if (std::abs(std::log(std::max(found->gyro_scale, 1e-3))) > kLikeScale) continue;
-    offsets.push_back({to_seconds(begin + (end - begin) / 2 - samples.front().t),
-                       to_seconds(camera.time_offset - found->time_offset),
-                       std::hypot(found->time_sigma_s, kLeastPieceSigma_s)});
-  }
-  return offsets;
 }
 
 /// A line through the offsets, and its uncertainty, which their scatter may enlarge.
@@ -102,6 +76,14 @@ void refine(std::span<const PieceOffset> offsets, ImuOffset& found) {
   found.sigma_s = line.sigma_s;
 }
 
+std::vector<PieceOffset> offsets_of(std::span<const std::vector<Turn>> pieces, std::span<const ImuSample> samples,
+                                    const RigCamera& camera, Duration shift) {
+  std::vector<PieceOffset> offsets;
+  for (const std::vector<Turn>& turns : pieces)
+    if (const auto offset = offset_of(turns, samples, camera, shift)) offsets.push_back(*offset);
+  return offsets;
+}
+
 Duration usual_length(std::span<const Turn> turns) {
   std::vector<double> lengths;
   for (const Turn& turn : turns) lengths.push_back(to_seconds(turn.end - turn.begin));
@@ -109,6 +91,20 @@ Duration usual_length(std::span<const Turn> turns) {
 }
 
 }  // namespace
+
+std::optional<PieceOffset> offset_of(std::span<const Turn> turns, std::span<const ImuSample> samples,
+                                     const RigCamera& camera, Duration shift) {
+  constexpr Duration kAroundTurns = std::chrono::seconds(1);  // the offsets that compare_with_gyro() tries, and more
+  if (turns.empty()) return std::nullopt;
+  const Timestamp begin = turns.front().begin + shift, end = turns.back().end + shift;
+  const auto found = compare_with_gyro(turns, gyro_between(samples, begin - kAroundTurns, end + kAroundTurns), shift);
+  if (!found || found->at_bound || found->mirrored || found->unexplained > kLikeGyro) return std::nullopt;
+  if (found->time_sigma_s > kMostPieceSigma_s) return std::nullopt;
+  if (std::abs(std::log(std::max(found->gyro_scale, 1e-3))) > kLikeScale) return std::nullopt;
+  return PieceOffset{to_seconds(begin + (end - begin) / 2 - samples.front().t),
+                     to_seconds(camera.time_offset - found->time_offset),
+                     std::hypot(found->time_sigma_s, kLeastPieceSigma_s)};
+}
 
 ImuOffset find_imu_offset(std::span<const std::vector<Turn>> pieces, std::span<const ImuSample> samples,
                           const RigCamera& camera, bool has_extrinsics) {

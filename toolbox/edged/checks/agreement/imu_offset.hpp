@@ -26,6 +26,17 @@ struct ImuOffset {
   bool determined() const { return match && match->unique && pieces > 0; }
 };
 
+/// The offset in one piece of the recording.
+struct PieceOffset {
+  double t_s;  ///< of the IMU from its first sample on
+  double x_s;  ///< what is to be added to its stamps
+  double sigma_s;
+};
+
+/// turns: of a piece. shift: t_imu = t_camera + shift, to 0.1 s. Nothing where the rotations do not determine it.
+std::optional<PieceOffset> offset_of(std::span<const Turn> turns, std::span<const ImuSample> samples,
+                                     const RigCamera& camera, Duration shift);
+
 /// pieces: the turns of parts of the recording, in time order. camera: that of the turns. has_extrinsics: its rotation
 /// to the body is calibrated.
 ImuOffset find_imu_offset(std::span<const std::vector<Turn>> pieces, std::span<const ImuSample> samples,
