@@ -4,13 +4,16 @@
 
     pip wheel --no-deps .                                                                 # a build of its own, in build/wheel
     pip wheel --no-deps --config-settings=build-dir=build/release .          # from a build that is there
+    pip wheel --no-deps --config-settings=libraries=inside .                      # with the libraries that it needs
 
-The wheel is for the Python that builds it, and for systems with the same libraries (linux_x86_64, not manylinux).
+The wheel is for the Python that builds it. Without its libraries it is for systems that have the same (linux_x86_64), with
+them for any with as new a glibc (manylinux).
 """
 import base64
 import hashlib
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -55,6 +58,13 @@ def _install(build, package):
     _run("cmake", "--install", build, "--component", "program", "--strip", "--prefix", package)
 
 
+def _add_libraries(package):
+    """The platform of the wheel: the oldest glibc that has all that module, program and their libraries need."""
+    files = [package / "bin" / "edged", *package.glob("_edged*.so")]
+    needed = subprocess.run([ROOT / "packaging" / "add_libraries", package, *files], check=True, stdout=subprocess.PIPE, text=True).stdout
+    return f"manylinux_{needed.split()[0].replace('.', '_')}_{platform.machine()}"
+
+
 def _record_line(name, content):
     digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
     return f"{name},sha256={digest},{len(content)}\n"
@@ -75,18 +85,18 @@ def _pack(wheel, tree):
         archive.writestr(f"{info}/RECORD", record + f"{info}/RECORD,,\n")
 
 
-def _tag():
+def _tag(system=None):
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    return f"{python}-{python}-{re.sub(r'[^a-z0-9]', '_', sysconfig.get_platform())}"
+    return f"{python}-{python}-{system or re.sub(r'[^a-z0-9]', '_', sysconfig.get_platform())}"
 
 
-def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None, tag=None):
     """The hook of PEP 517: what the wheel will say of itself, without building it."""
     del config_settings
     info = pathlib.Path(metadata_directory) / f"edged-{VERSION}.dist-info"
     info.mkdir()
     (info / "METADATA").write_text(METADATA)
-    (info / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: edged_wheel\nRoot-Is-Purelib: false\nTag: {_tag()}\n")
+    (info / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: edged_wheel\nRoot-Is-Purelib: false\nTag: {tag or _tag()}\n")
     (info / "entry_points.txt").write_text("[console_scripts]\nedged = edged._program:main\n")
     shutil.copy(ROOT / "LICENSE", info)
     return info.name
@@ -95,11 +105,13 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """The hook of PEP 517."""
     del metadata_directory
-    name = f"edged-{VERSION}-{_tag()}.whl"
+    settings = config_settings or {}
     with tempfile.TemporaryDirectory() as folder:
         tree = pathlib.Path(folder)
-        _install(_build((config_settings or {}).get("build-dir")), tree / "edged")
-        prepare_metadata_for_build_wheel(tree)
+        _install(_build(settings.get("build-dir")), tree / "edged")
+        tag = _tag(_add_libraries(tree / "edged") if settings.get("libraries") == "inside" else None)
+        prepare_metadata_for_build_wheel(tree, tag=tag)
+        name = f"edged-{VERSION}-{tag}.whl"
         _pack(pathlib.Path(wheel_directory) / name, tree)
     return name
 
