@@ -15,7 +15,7 @@
 #include "common/log.hpp"
 #include "common/text.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/archive/zip_archive.hpp"
+#include "edged/io/archive/source_path.hpp"
 #include "run/run_folder.hpp"
 #include "run/run_reader.hpp"
 #include "run/verdict.hpp"

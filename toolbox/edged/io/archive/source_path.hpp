@@ -60,4 +60,11 @@ class SourcePath {
   std::shared_ptr<ZipArchive> archive_;  ///< null: on disk
 };
 
+/// head: the first bytes of a file.
+bool is_zip(ByteSpan head);
+
+/// Writes all files of the folder and its subfolders, under its name, except `file` itself. Replaces `file` atomically,
+/// after all is written. Throws InputError if a file cannot be read or the archive cannot be written.
+void zip_folder(const std::filesystem::path& file, const std::filesystem::path& folder);
+
 }  // namespace edged

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/archive/zip_archive.hpp"
+#include "edged/io/archive/source_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string unpacked(ZipArchive& archive, const fs::path& path) {
-  std::string text(100, '\0');
-  text.resize(archive.open(path)->read(text));
-  return text;
-}
+std::string unpacked(const SourcePath& file) { return std::string(as_text(file.read(100))); }
 
 TEST(ZipWriter, PacksAFolderUnderItsNameAndReplacesAnEarlierArchiveInIt) {
   const TempFolder folder;
@@ -23,10 +19,10 @@ TEST(ZipWriter, PacksAFolderUnderItsNameAndReplacesAnEarlierArchiveInIt) {
   folder.write("run/sub/b.txt", "second");
   const fs::path file = folder.path() / "run" / "all.zip";
   for (int repeat = 0; repeat < 2; ++repeat) zip_folder(file, folder.path() / "run/");
-  ZipArchive archive(file);
-  EXPECT_EQ(archive.names("run"), (std::vector<std::string>{"a.txt", "sub"}));
-  EXPECT_EQ(unpacked(archive, "run/a.txt"), "first");
-  EXPECT_EQ(unpacked(archive, "run/sub/b.txt"), "second");
+  const SourcePath run = SourcePath::in_archive(file) / "run";
+  EXPECT_EQ(run.names(), (std::vector<std::string>{"a.txt", "sub"}));
+  EXPECT_EQ(unpacked(run / "a.txt"), "first");
+  EXPECT_EQ(unpacked(run / "sub/b.txt"), "second");
 }
 
 TEST(ZipWriter, SaysWhichFileCannotBeWritten) {
