@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a plain event file: its form found, then read through in every unit that the first byte may choose.
-#include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/event_text.hpp"
 #include "fuzz_support.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

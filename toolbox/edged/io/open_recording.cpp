@@ -24,7 +24,7 @@
 #include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/ros/ros.hpp"
 #include "edged/io/text/dataset_formats.hpp"
-#include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/event_text.hpp"
 #include "edged/io/text/sample_files.hpp"
 
 namespace edged {

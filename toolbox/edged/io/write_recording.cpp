@@ -19,7 +19,7 @@
 #include "edged/io/prophesee/raw.hpp"
 #include "edged/io/ros/ros.hpp"
 #include "edged/io/text/dataset_formats.hpp"
-#include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/event_text.hpp"
 
 namespace edged {
 namespace {

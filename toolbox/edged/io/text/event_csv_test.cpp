@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Plain event files: columns, separators, units, damage.
-#include "edged/io/text/event_csv.hpp"
+#include "edged/io/text/event_text.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <functional>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,41 +37,7 @@ struct TextLayout {
   std::function<std::optional<GroundTruth>(Repairs&)> ground_truth;  ///< may be empty
 };
 
-class TextDataset final : public Dataset {
- public:
-  /// Throws InputError if no sensor has a readable line.
-  explicit TextDataset(TextLayout layout);
-
-  const DatasetInfo& info() const override { return layout_.info; }
-  std::optional<Measurement> next() override;
-  void leave_out(Modality unwanted) override;
-  std::optional<GroundTruth> ground_truth() const override;
-  std::map<std::string, std::size_t> repairs() const override;
-
- private:
-  void open_streams();
-  void name_cameras();
-  void find_ends();
-  struct EventStream {
-    std::string camera;
-    EventTextStream events;
-  };
-  struct FrameStream {
-    std::string camera;
-    StampedLines<FrameEntry> lines;
-    cv::Size size = {};  ///< size of the first image
-  };
-  Timestamp next_event_stamp();
-  Timestamp next_frame_stamp() const;
-  EventBatch take_events(Timestamp end);
-  std::optional<Frame> load_next_frame();
-
-  TextLayout layout_;
-  Repairs repairs_;
-  mutable Repairs ground_truth_repairs_;  ///< made in the last reading, so that repeated readings are not counted twice
-  std::vector<EventStream> events_;
-  std::vector<FrameStream> frames_;
-  std::optional<StampedLines<ImuSample>> imu_;
-};
+/// The recording of these files. Throws InputError if no sensor has a readable line.
+std::unique_ptr<Dataset> open_text(TextLayout layout);
 
 }  // namespace edged
