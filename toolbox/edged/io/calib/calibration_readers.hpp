@@ -1,19 +1,74 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The readers of the calibration formats, for load_calibration. Internal to io.
+// Lenses from calibration files, the readers of their formats, and the cameras of a rig made from them. Internal to io.
 #pragma once
 
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "edged/io/calib/lens.hpp"
 #include "edged/io/calib/yaml_reader.hpp"
+#include "edged/io/calibration_data.hpp"
 
 namespace edged {
 
-/// The calibration file of a folder (docs/calibration.md). Throws InputError if it has none or several.
-SourcePath find_calibration(const SourcePath& folder);
-/// Detects the format by the content.
-CalibrationFile read_calibration_file(const SourcePath& file);
+/// A lens with its sensor. It becomes one camera of a rig, or two for events and frames.
+struct Lens {
+  std::string name;
+  CameraModel model;
+  SE3 T_B_C;
+  Duration time_offset = Duration(0);
+  std::optional<Sees> sees;  ///< if the format states it
+  std::string words = {};    ///< its names and topics, for guess_sees
+  std::string topic = {};    ///< ROS topic of its images or events; "" if the file names none
+};
+
+/// The content of a calibration file and of the files that it names.
+struct CalibrationFile {
+  std::string name = {};  ///< name of the rig; "" if the file has none
+  std::vector<Lens> lenses = {};
+  bool has_extrinsics = true;
+  std::optional<ImuNoise> imu = {};
+  std::vector<std::string> warnings = {};
+};
+
+/// A value of ImuNoise and its keys in the formats, "" where a format has none.
+struct NoiseKey {
+  double ImuNoise::*value;
+  const char *own, *kalibr, *basalt;
+  const char* unit;  ///< "" without one
+};
+std::span<const NoiseKey> noise_keys();
+
+/// Intrinsics in the terms of the formats.
+struct Intrinsics {
+  double width, height;              ///< [px]
+  std::vector<double> projection;    ///< fx, fy, cx, cy [px]
+  std::string distortion = "none";   ///< in the naming of any format
+  std::vector<double> coefficients;  ///< beyond those of the model they must be zero
+};
+
+/// The camera model with its distortion. Errors name the file and line of `place`. Throws InputError for models and
+/// coefficients that are not supported.
+CameraModel make_model(const YamlReader& place, const Intrinsics& intrinsics);
+
+/// The camera model in the keys that this program, Kalibr and EuRoC share (camera_model, resolution, intrinsics), and
+/// in the given keys of the distortion.
+CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,
+                       const std::string& coefficients_key);
+
+/// Guesses from the names of a camera and the size of its image. Nothing if they do not determine it:
+/// - both: it is called davis, or named as an event camera with a topic of images, and has the size of a DAVIS;
+/// - events: named as an event camera or its maker (event, dvs, davis, prophesee, evk, ...);
+/// - frames: named as what frames come from (image, frame, standard, regular, rgb, mono, gray, ...).
+std::optional<Sees> guess_sees(std::string_view words, int width, int height);
+
+/// Determines the modality of each lens (by the options, the file, its words, in this order) and names the cameras.
+Calibration to_calibration(const CalibrationFile& file, const CalibrationOptions& options, const SourcePath& path);
+
+// The readers of the formats.
 
 CalibrationFile read_own_yaml(const YamlReader& root);
 CalibrationFile read_ecd_calib(const SourcePath& file);
@@ -25,11 +80,6 @@ CalibrationFile read_basalt(const YamlReader& root);
 /// Of a file, or a message as `ros2 topic echo` prints it.
 CalibrationFile read_camera_info(const YamlReader& root);
 bool is_camera_info_message(const YamlReader& root);
-/// A lens in the keys of OpenCV, such as camera_matrix. The name of the distortion model may be in another node.
-Lens read_opencv_lens(const YamlReader& root, const std::string& distortion);
-std::string opencv_distortion(const YamlReader& root);
-/// fx, fy, cx, cy of a 3x3 matrix.
-std::vector<double> read_camera_matrix(const YamlReader& matrix);
 
 /// DV of iniVation.
 bool is_dv_json(const YamlReader& root);
@@ -56,18 +106,6 @@ CalibrationFile read_vector(const YamlReader& root);
 bool is_vector(const YamlReader& root);
 /// The extrinsics file of a folder.
 std::vector<SourcePath> find_vector_files(const SourcePath& folder);
-
-/// The mask from a picture, whose name is relative to the calibration file: 0 where it is darker than middle grey.
-/// Throws InputError if the picture is missing, unreadable, or not of the size of the camera.
-std::vector<std::uint8_t> read_mask(const YamlReader& picture, const CameraModel& camera);
-
-/// The mask from run lengths: alternately numbers of used and ignored pixels, row by row, beginning with used ones.
-std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraModel& camera);
-/// The run lengths for read_mask_runs, in lines of bounded length.
-std::string mask_runs(const CameraModel& camera);
-
-/// The share of all pixels of the camera.
-double ignored_share(const CameraModel& camera);
 
 /// One line with the remedy for each implausible value: lever arms (long, or millimetres instead of metres), fields of
 /// view, principal points, image sizes. Throws InputError for a field of view that no lens has.

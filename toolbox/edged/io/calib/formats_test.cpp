@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formats of other programs: direction of transforms, sign of time offsets, modality of cameras.
 #include "edged/io/calib/calib_test_support.hpp"
-#include "edged/io/calib/lens.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 namespace edged {
 namespace {

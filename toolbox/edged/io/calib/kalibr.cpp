@@ -87,14 +87,6 @@ KalibrLens kalibr_lens(const RigCamera& camera) {
   return out;
 }
 
-std::string rows(const SE3& T) {
-  std::string out;
-  const Eigen::Matrix4d M = T.matrix();
-  for (int row = 0; row < 4; ++row)
-    out += fmt::format("  - [{}, {}, {}, {}]\n", M(row, 0), M(row, 1), M(row, 2), M(row, 3));
-  return out;
-}
-
 }  // namespace
 
 CalibrationFile read_kalibr(const YamlReader& root) {
@@ -159,9 +151,9 @@ std::string to_kalibr_yaml(const Calibration& calibration, bool has_poses) {
     const RigCamera& camera = calibration.rig.cameras[i];
     const KalibrLens lens = kalibr_lens(camera);
     out += fmt::format("cam{}:\n", i);
-    if (calibration.has_extrinsics) out += "  T_cam_imu:\n" + rows(camera.T_B_C.inverse());
+    if (calibration.has_extrinsics) out += "  T_cam_imu:\n" + yaml_rows(camera.T_B_C.inverse(), "  ");
     if (has_poses && i > 0)
-      out += "  T_cn_cnm1:\n" + rows(camera.T_B_C.inverse() * calibration.rig.cameras[i - 1].T_B_C);
+      out += "  T_cn_cnm1:\n" + yaml_rows(camera.T_B_C.inverse() * calibration.rig.cameras[i - 1].T_B_C, "  ");
     out += fmt::format(
         "  camera_model: {}\n  distortion_coeffs: [{}]\n  distortion_model: {}\n  intrinsics: [{}]\n  resolution: [{}, "
         "{}]\n  rostopic: /{}\n  name: {}\n  modality: {}\n",

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/calib/lens.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 
 #include <spdlog/fmt/ranges.h>
 
@@ -85,14 +85,6 @@ std::string camera_model_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Distortion distortion_of(const YamlReader& place, const Intrinsics& in) {
-  try {
-    return make_distortion(in.distortion, in.coefficients);
-  } catch (const InputError& e) {
-    place.fail(e.what());
-  }
-}
-
 /// From Kalibr's camera model with its own coefficients before the focal lengths, and a distortion, to ours, which
 /// lists the coefficients of both.
 void take_camera_model(const YamlReader& camera, const std::string& model, Intrinsics& in) {
@@ -108,7 +100,7 @@ void take_camera_model(const YamlReader& camera, const std::string& model, Intri
                           own == 1 ? "its coefficient" : "its coefficients",
                           lens->coefficients.substr(0, lens->coefficients.find(" ["))));
   const auto begin = in.projection.begin(), end = begin + static_cast<std::ptrdiff_t>(own);
-  const Distortion second = distortion_of(camera, in);
+  const Distortion second = camera.checked([&] { return make_distortion(in.distortion, in.coefficients); });
   std::vector<double> coefficients(begin, end);
   if (lens->model == DistortionModel::Omni && second.model == DistortionModel::Equidistant) {
     lens = &lens_model(DistortionModel::OmniEquidistant);
@@ -135,14 +127,12 @@ CameraModel make_model(const YamlReader& place, const Intrinsics& in) {
       !(in.height <= kMaxPixels) || !(in.width >= 1) || !(in.height >= 1))
     place.fail(fmt::format("image size {} x {}: must be whole pixels, from 1 to {}", in.width, in.height, kMaxPixels));
   if (in.projection.size() != 4) place.fail("intrinsics must be [fx, fy, cx, cy]");
-  try {
+  return place.checked([&] {
     const Distortion distortion = make_distortion(in.distortion, in.coefficients);
     const auto& f = in.projection;
     return CameraModel(static_cast<int>(in.width), static_cast<int>(in.height), f[0], f[1], f[2], f[3],
                        distortion.model, distortion.k);
-  } catch (const InputError& e) {
-    place.fail(e.what());
-  }
+  });
 }
 
 CameraModel read_model(const YamlReader& camera, const std::string& distortion_key,

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/core/camera_names.hpp"
+#include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
@@ -62,11 +63,71 @@ void take_last_bits(const YamlReader& node, SE3& T_B_C) {
     T_B_C.rotation() = exact;
 }
 
-/// The changed model; what is wrong with it is wrong with that value.
-CameraModel changed(const YamlReader& value, const std::function<CameraModel()>& change) try {
-  return change();
-} catch (const InputError& e) {
-  value.fail(e.what());
+std::size_t pixels_of(const CameraModel& camera) {
+  return static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height());
+}
+
+/// The mask from a picture, whose name is relative to the calibration file: 0 where it is darker than middle grey.
+/// Throws InputError if the picture is missing, unreadable, or not of the size of the camera.
+std::vector<std::uint8_t> read_mask(const YamlReader& picture, const CameraModel& camera) {
+  constexpr std::uint8_t kWhite = 128;  // used from this grey level on
+  const std::string name = picture.text();
+  const SourcePath file = std::filesystem::path(name).is_absolute() ? SourcePath(std::filesystem::path(name))
+                                                                    : picture.file().parent_path() / name;
+  if (!file.is_file())
+    picture.fail(fmt::format("{}: no such picture; its name is relative to this file", file.string()));
+  const cv::Mat image = read_gray_image(file);
+  if (image.empty()) picture.fail(fmt::format("{}: cannot be read as a picture; write it as PNG", file.string()));
+  if (image.cols != camera.width() || image.rows != camera.height())
+    picture.fail(fmt::format("{}: has {} x {} px, the camera {} x {}: draw it on one of the camera's own pictures",
+                             file.string(), image.cols, image.rows, camera.width(), camera.height()));
+  std::vector<std::uint8_t> used(image.begin<std::uint8_t>(), image.end<std::uint8_t>());
+  for (std::uint8_t& pixel : used) pixel = pixel < kWhite ? 0 : 255;
+  return used;
+}
+
+/// The mask from run lengths: alternately numbers of used and ignored pixels, row by row, beginning with used ones.
+std::vector<std::uint8_t> read_mask_runs(const YamlReader& runs, const CameraModel& camera) {
+  std::vector<std::uint8_t> used;
+  const std::string text = runs.text();
+  FieldReader fields(text);
+  std::uint8_t value = 255;
+  for (std::string_view field = fields.next(); !field.empty(); field = fields.next()) {
+    const auto count = parse_whole<std::size_t>(field);
+    if (!count || *count > pixels_of(camera) - used.size())
+      runs.fail(fmt::format("must be numbers of pixels that make up {} x {}; or give a picture, with mask",
+                            camera.width(), camera.height()));
+    used.insert(used.end(), *count, std::exchange(value, static_cast<std::uint8_t>(255 - value)));
+  }
+  if (used.size() != pixels_of(camera))
+    runs.fail(fmt::format("describes {} pixels, the camera has {}", used.size(), pixels_of(camera)));
+  return used;
+}
+
+/// The run lengths for read_mask_runs, in lines of bounded length.
+std::string mask_runs(const CameraModel& camera) {
+  constexpr std::size_t kLine = 100;  // characters
+  std::string text;
+  std::size_t count = 0, line = 0;
+  bool used = true;
+  const auto end_run = [&] {
+    const std::string number = std::to_string(count);
+    if (line + number.size() > kLine)
+      text += "\n      ", line = 0;
+    else if (!text.empty())
+      text += " ";
+    text += number;
+    line += number.size() + 1;
+    used = !used;
+    count = 0;
+  };
+  for (int y = 0; y < camera.height(); ++y)
+    for (int x = 0; x < camera.width(); ++x) {
+      if (camera.uses(x, y) != used) end_run();
+      ++count;
+    }
+  end_run();
+  return text;
 }
 
 Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
@@ -87,10 +148,10 @@ Lens read_own_camera(const YamlReader& node, const std::vector<Lens>& above) {
   if (mask && runs) runs->fail("cannot be combined with mask");
   if (const auto angle = node.find("max_angle")) {
     const double limit = angle->number() * kDegree;
-    lens.model = changed(*angle, [&] { return model.within(limit); });
+    lens.model = angle->checked([&] { return model.within(limit); });
   }
-  if (mask) lens.model = changed(*mask, [&, used = read_mask(*mask, model)] { return model.masked(used); });
-  if (runs) lens.model = changed(*runs, [&, used = read_mask_runs(*runs, model)] { return model.masked(used); });
+  if (mask) lens.model = mask->checked([&, used = read_mask(*mask, model)] { return model.masked(used); });
+  if (runs) lens.model = runs->checked([&, used = read_mask_runs(*runs, model)] { return model.masked(used); });
   const auto T_B_C = node.find("T_B_C"), T_C_B = node.find("T_C_B");
   if (T_B_C.has_value() == T_C_B.has_value())
     node.fail("needs one of T_B_C (camera to IMU, p_B = T_B_C * p_C) and T_C_B (its inverse)");
@@ -115,9 +176,7 @@ std::string quoted(const std::string& text) {
 
 std::string pose_yaml(const RigCamera& camera) {
   std::string out = "    T_B_C:  # camera to IMU: p_B = T_B_C * p_C\n";
-  const Eigen::Matrix4d T = camera.T_B_C.matrix();
-  for (int row = 0; row < 4; ++row)
-    out += fmt::format("      - [{}, {}, {}, {}]\n", T(row, 0), T(row, 1), T(row, 2), T(row, 3));
+  out += yaml_rows(camera.T_B_C, "      ");
   const Eigen::Quaterniond& q = camera.T_B_C.rotation();
   out += fmt::format("    q_B_C: [{}, {}, {}, {}]  # rotation of T_B_C to the last bit: w x y z\n", q.w(), q.x(), q.y(),
                      q.z());

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "edged/camera/lens_table.hpp"
-#include "edged/io/calib/lens.hpp"
+#include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/test_support.hpp"
 

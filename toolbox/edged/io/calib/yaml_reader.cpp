@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Access to yaml, with errors that name file, line and key.
+// Access to yaml and the xml of OpenCV, with errors that name file, line and key.
 #include "edged/io/calib/yaml_reader.hpp"
 
 #include <spdlog/fmt/ranges.h>
+#include <tinyxml2.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -68,6 +69,50 @@ void check_filled_in(const SourcePath& file, const std::string& text) {
                                             : fmt::format("{} lines read FILL_IN: {}; write your numbers there",
                                                           lines.size(), fmt::join(lines, ", "));
   throw InputError::format("{}:{}: {} ({})", file.string(), lines.front(), all, fmt::join(keys, ", "));
+}
+
+/// A text in quotes is one item.
+YAML::Node leaf(std::string_view text) {
+  const std::size_t quote = text.find('"'), end = text.rfind('"');
+  if (quote != end) return YAML::Node(std::string(text.substr(quote + 1, end - quote - 1)));
+  std::string words(text);
+  std::replace_if(
+      words.begin(), words.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  FieldReader fields(words);
+  const std::string first(fields.next());
+  std::string_view next = fields.next();
+  if (next.empty()) return YAML::Node(first);
+  YAML::Node list(YAML::NodeType::Sequence);
+  list.push_back(first);
+  for (; !next.empty(); next = fields.next()) list.push_back(std::string(next));
+  return list;
+}
+
+YAML::Node value_of(const tinyxml2::XMLElement& element) {
+  const tinyxml2::XMLElement* child = element.FirstChildElement();
+  if (!child) return leaf(element.GetText() ? element.GetText() : "");
+  const bool is_list = std::string_view(child->Name()) == "_";
+  YAML::Node node(is_list ? YAML::NodeType::Sequence : YAML::NodeType::Map);
+  for (; child; child = child->NextSiblingElement())
+    is_list ? node.push_back(value_of(*child)) : node.force_insert(std::string(child->Name()), value_of(*child));
+  return node;
+}
+
+/// True if the text begins as xml.
+bool is_xml(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return begin != std::string_view::npos && text[begin] == '<';
+}
+
+/// Elements become keys, elements `_` become items of a list, a sequence of numbers becomes a list. Throws Damage, with
+/// the line, if the text is no xml.
+YAML::Node parse_opencv_xml(std::string_view text) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    throw Damage(fmt::format("not readable as xml from line {} on", document.ErrorLineNum()));
+  const tinyxml2::XMLElement* root = document.FirstChildElement("opencv_storage");
+  if (!root) throw Damage("xml, but not of OpenCV: it has no element opencv_storage");
+  return value_of(*root);
 }
 
 YAML::Node parse_file(const SourcePath& file) {
@@ -217,6 +262,14 @@ void YamlReader::allow_only(const std::vector<std::string_view>& known) const {
     if (std::ranges::find(known, key) != known.end()) continue;
     value.fail(fmt::format("unknown key; known here: {}", fmt::join(known, ", ")));
   }
+}
+
+std::string yaml_rows(const SE3& T, std::string_view indent) {
+  std::string out;
+  const Eigen::Matrix4d M = T.matrix();
+  for (int row = 0; row < 4; ++row)
+    out += fmt::format("{}- [{}, {}, {}, {}]\n", indent, M(row, 0), M(row, 1), M(row, 2), M(row, 3));
+  return out;
 }
 
 }  // namespace edged

@@ -13,18 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "edged/core/check.hpp"
 #include "edged/io/archive/source_path.hpp"
 #include "edged/se3.hpp"
 #include "edged/time.hpp"
 
 namespace edged {
-
-/// True if the text begins as xml.
-bool is_xml(std::string_view text);
-
-/// Elements become keys, elements `_` become items of a list, a sequence of numbers becomes a list. Throws Damage, with
-/// the line, if the text is no xml.
-YAML::Node parse_opencv_xml(std::string_view text);
 
 /// Also reads OpenCV's dialect (`%YAML:1.0`, `!!opencv-matrix`), its xml, and json.
 class YamlReader {
@@ -63,6 +57,13 @@ class YamlReader {
 
   const SourcePath& file() const { return file_; }
   [[noreturn]] void fail(const std::string& what) const;
+  /// What make() returns. If it throws InputError, that becomes one about this value.
+  template <typename Make>
+  auto checked(const Make& make) const try {
+    return make();
+  } catch (const InputError& e) {
+    fail(e.what());
+  }
   void warn(const std::string& what) const { warnings_->push_back(place() + what); }
   const std::vector<std::string>& warnings() const { return *warnings_; }  ///< about all values of the file
 
@@ -78,5 +79,8 @@ class YamlReader {
   YAML::Node node_;
   Warnings warnings_;
 };
+
+/// The matrix of T for YamlReader::transform(), a line for each row.
+std::string yaml_rows(const SE3& T, std::string_view indent);
 
 }  // namespace edged
