@@ -14,7 +14,7 @@
 #include "edged/checks/agreement/test_head.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
-#include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 #include "edged/io/test_support.hpp"
 #include "node/node_test_support.hpp"
 

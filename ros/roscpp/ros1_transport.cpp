@@ -4,7 +4,7 @@
 
 #include <ros/serialization.h>
 
-#include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 
 namespace edged::ros1 {
 namespace {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "edged/io/ros/messages/definitions.hpp"
 #include "edged/io/ros/messages/messages.hpp"
 
 namespace edged::node {

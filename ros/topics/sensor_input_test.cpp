@@ -6,7 +6,7 @@
 
 #include "edged/io/parse/evt.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
-#include "edged/io/ros/messages/definitions.hpp"
+#include "edged/io/ros/messages/wire.hpp"
 
 namespace edged::node {
 namespace {

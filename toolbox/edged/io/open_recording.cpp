@@ -21,7 +21,6 @@
 #include "edged/io/hdf5/hdf5.hpp"
 #include "edged/io/parse/imu_table.hpp"
 #include "edged/io/prophesee/raw.hpp"
-#include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/ros/ros.hpp"
 #include "edged/io/text/dataset_formats.hpp"
 #include "edged/io/text/event_text.hpp"

@@ -5,12 +5,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
-#include <bit>
 #include <utility>
 #include <vector>
 
 #include "edged/core/angles.hpp"
-#include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat_old.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 

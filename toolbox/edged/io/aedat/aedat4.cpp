@@ -9,10 +9,8 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_dataset.hpp"
-#include "edged/io/aedat/flat_table.hpp"
 #include "edged/io/archive/compression.hpp"
 #include "edged/io/archive/record_file.hpp"
-#include "edged/io/core/geometry.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {

@@ -17,8 +17,6 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat4_dataset.hpp"
-#include "edged/io/aedat/flat_table.hpp"
-#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace {

@@ -12,7 +12,7 @@
 #include <atomic>
 #include <thread>
 
-#include "edged/io/aedat/aedat4_header.hpp"
+#include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/aedat/aedat4_writer.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/evt_test_support.hpp"

@@ -13,7 +13,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat.hpp"
-#include "edged/io/aedat/aedat4_header.hpp"
+#include "edged/io/aedat/aedat4_dataset.hpp"
 #include "edged/io/archive/compression.hpp"
 #include "edged/io/core/camera_names.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The header of AEDAT 2.0 files of jAER and AEDAT 3.1 files of cAER, and their readers.
+// The header of AEDAT 2.0 files of jAER and AEDAT 3.1 files of cAER, and the reader of the former.
 #pragma once
 
 #include <optional>
@@ -20,10 +20,6 @@ struct OldAedatHeader {
   double accel_lsb_per_g = 4096;   ///< +-8 g
 };
 
-/// head: the first bytes of a file. Throws Damage if they contain no line end.
-OldAedatHeader parse_old_aedat_header(ByteSpan head);
-
 Recording open_aedat2(const std::filesystem::path& file, const OldAedatHeader& header, cv::Size sensor);
-Recording open_aedat3(const std::filesystem::path& file, const OldAedatHeader& header, cv::Size sensor);
 
 }  // namespace edged

@@ -293,6 +293,17 @@ TopicWishes wishes_of(const Rig* rig, const RecordingOptions& options) {
   return {options.topics, options.camera_topics, rig, options.cameras, options.all_cameras};
 }
 
+std::vector<StreamInfo> TopicChoice::streams(const std::vector<Topic>& of) const {
+  std::vector<StreamInfo> streams;
+  for (const Topic& topic : of) streams.push_back({topic.name, topic.type, topic.count, ""});
+  for (std::size_t role = 0; role < kRoleNames.size(); ++role)
+    if (topics[role]) streams[*topics[role]].role = kRoleNames[role];
+  for (const CameraTopic& camera : cameras)
+    if (std::ranges::count(cameras, camera.modality, &CameraTopic::modality) > 1)
+      streams[camera.topic].role = camera.name;
+  return streams;
+}
+
 std::vector<RecordedCamera> TopicChoice::recorded(const std::vector<Topic>& of) const {
   std::vector<RecordedCamera> out;
   for (const CameraTopic& camera : cameras) out.push_back({camera.name, camera.modality, of[camera.topic].name});

@@ -76,6 +76,8 @@ struct TopicChoice {
   std::vector<CameraTopic> cameras;  ///< that are read: event cameras, then frame cameras, of each kind the first first
   std::vector<RecordedCamera> known;  ///< all cameras, also those that are not read
   std::optional<std::size_t> of(Role role) const { return topics[static_cast<std::size_t>(role)]; }
+  /// The topics with their roles, as DatasetInfo lists them.
+  std::vector<StreamInfo> streams(const std::vector<Topic>& of) const;
   /// As StreamedDataset needs them.
   std::vector<RecordedCamera> recorded(const std::vector<Topic>& of) const;
   /// The camera of that topic, and its place among those of its kind.

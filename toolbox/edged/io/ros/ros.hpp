@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "edged/io/archive/bytes.hpp"
 #include "edged/io/core/recording_writer.hpp"
@@ -16,6 +17,10 @@ namespace edged {
 bool is_bag(ByteSpan head);
 /// True for the folder of a ROS 2 bag.
 bool is_bag_folder(const std::filesystem::path& folder);
+
+/// The files of the bag whose first part is given, NAME_0.bag, NAME_1.bag and so on, in this order. Only the given file
+/// if it is no first part.
+std::vector<std::filesystem::path> split_bag_parts(const std::filesystem::path& first);
 
 /// path: of a file or folder. The cameras are those of choose_topics(). The poses are those of "body", or of the camera
 /// that the messages name. The size of an event camera is that of the rig, else options.geometry, else that of its

@@ -132,7 +132,8 @@ class RosDataset final : public StreamedDataset {
     choice_ = choose_topics(topics, wishes, name_);
     if (wishes.rig) rig_ = *wishes.rig;
     info_.format = source_->wire() == Wire::Ros1 ? "ros1" : "ros2";
-    name_roles();
+    info_.streams = choice_.streams(topics);
+    if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
     readable_.resize(topics.size());
     unreadable_.resize(topics.size());
     const std::vector<RecordedCamera> cameras = choice_.recorded(topics);
@@ -168,16 +169,6 @@ class RosDataset final : public StreamedDataset {
   }
 
  private:
-  void name_roles() {
-    for (const Topic& topic : source_->topics()) info_.streams.push_back({topic.name, topic.type, topic.count, ""});
-    for (std::size_t role = 0; role < kRoleNames.size(); ++role)
-      if (const auto topic = choice_.topics[role]) info_.streams[*topic].role = kRoleNames[role];
-    for (const CameraTopic& camera : choice_.cameras)
-      if (std::ranges::count(choice_.cameras, camera.modality, &CameraTopic::modality) > 1)
-        info_.streams[camera.topic].role = camera.name;
-    if (imu_topics_.accel) info_.streams[*imu_topics_.accel].role = "imu";
-  }
-
   /// Calls `take` for each readable pose of the ground truth until it returns false.
   void read_poses(const std::function<bool(const NamedPose&)>& take) const {
     const auto topic = choice_.of(Role::Truth);

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "edged/io/ros/bag/message_records.hpp"
-#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
 namespace {

@@ -9,7 +9,6 @@
 #include <algorithm>
 
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
 namespace {

@@ -4,12 +4,9 @@
 #pragma once
 
 #include <map>
-#include <utility>
 
-#include "edged/io/archive/compression.hpp"
 #include "edged/io/archive/record_file.hpp"
-#include "edged/io/parse/repairs.hpp"
-#include "edged/io/ros/bag/message_source.hpp"
+#include "edged/io/ros/bag/open_messages.hpp"
 
 namespace edged {
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Detects the container of each file, decompresses what the recorder compressed, and joins the files.
+// Finds the files of a bag in several, as folders of ROS 2 and `rosbag record --split` have, detects the container of
+// each, decompresses what the recorder compressed, and joins them.
 #include "edged/io/ros/bag/open_messages.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -8,10 +9,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <tuple>
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/compression.hpp"
-#include "edged/io/ros/bag/bag_files.hpp"
 #include "edged/io/ros/ros.hpp"
 
 namespace edged {
@@ -160,6 +164,89 @@ bool follows(const MessageSource& part, const MessageSource& before) {
   return gap > -kOverlap && gap < kGap;
 }
 
+/// Splits "NAME_12.bag" into "NAME_", 12 and ".bag".
+struct PartName {
+  std::string front, back;
+  int number = 0;
+};
+
+std::optional<PartName> part_name(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const std::size_t dot = name.find('.', name.rfind('_') + 1), bar = name.rfind('_');
+  if (bar == std::string::npos || dot == std::string::npos) return std::nullopt;
+  PartName part{name.substr(0, bar + 1), name.substr(dot), 0};
+  const char* const end = name.data() + dot;
+  const auto [stop, error] = std::from_chars(name.data() + bar + 1, end, part.number);
+  if (error != std::errc() || stop != end || part.number < 0) return std::nullopt;
+  return part;
+}
+
+/// name_2 before name_10, compressed or not.
+std::tuple<std::string, int, std::size_t, std::string> order_of_part(const fs::path& file) {
+  const std::string name = (file.extension() == ".zstd" ? file.stem() : file.filename()).string();
+  const PartName part = part_name(file).value_or(PartName());
+  return {part.front, part.number, name.size(), name};
+}
+
+/// The files that a metadata.yaml lists: lines of `- NAME.db3`.
+std::vector<std::string> listed_parts(const fs::path& metadata) {
+  std::vector<std::string> names;
+  std::ifstream in(metadata);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t begin = line.find_first_not_of(" -\"'\t"), dash = line.find('-');
+    const std::size_t end = line.find_last_not_of(" \"'\t\r");
+    if (begin == std::string::npos || dash >= begin) continue;
+    const std::string name = line.substr(begin, end - begin + 1);
+    for (const char* ending : {".db3", ".mcap", ".db3.zstd", ".mcap.zstd"})
+      if (name.ends_with(ending) && name.find(':') == std::string::npos) names.push_back(name);
+  }
+  return names;
+}
+
+/// The .db3 or .mcap files of a folder, also compressed as .zstd, in the order of their numbers. Empty if there are
+/// none. metadata.yaml is not needed: crashed recorders do not write it, and the files contain the same information.
+std::vector<fs::path> bag_parts(const fs::path& folder) {
+  std::vector<fs::path> parts;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    fs::path plain = entry.path();
+    if (plain.extension() == ".zstd") {
+      plain.replace_extension();
+      if (fs::exists(plain)) continue;  // the recorder was stopped while it compressed
+    }
+    const auto extension = plain.extension();
+    if (entry.is_regular_file() && (extension == ".db3" || extension == ".mcap")) parts.push_back(entry.path());
+  }
+  std::ranges::sort(parts, {}, order_of_part);
+  return parts;
+}
+
+/// Names of the missing files of a bag in these parts, by the list in metadata.yaml, else by their numbers.
+std::vector<std::string> missing_parts(const std::vector<fs::path>& parts) {
+  std::set<std::string> missing;
+  std::set<std::string> there;
+  for (const fs::path& file : parts) {
+    there.insert(file.filename().string());
+    if (file.extension() == ".zstd") there.insert(file.stem().string());  // metadata.yaml lists either name
+  }
+  const auto is_there = [&there](const std::string& name) {
+    return there.contains(name) || there.contains(fs::path(name).stem().string());
+  };
+  const std::vector<std::string> listed = listed_parts(parts.front().parent_path() / "metadata.yaml");
+  if (std::ranges::any_of(listed, is_there)) {  // otherwise the files have been renamed
+    for (const std::string& name : listed)
+      if (!is_there(name)) missing.insert(name);
+    return {missing.begin(), missing.end()};
+  }
+  if (const auto last = part_name(parts.back()); last && parts.size() > 1) {
+    std::set<int> numbers;
+    for (const fs::path& file : parts)
+      if (const auto part = part_name(file); part && part->front == last->front) numbers.insert(part->number);
+    for (int i = 0; numbers.size() == parts.size() && i < last->number; ++i)
+      if (!numbers.contains(i)) missing.insert(last->front + std::to_string(i) + last->back);
+  }
+  return {missing.begin(), missing.end()};
+}
+
 }  // namespace
 
 std::size_t topic_index(std::vector<Topic>& topics, std::string_view name, std::string_view type,
@@ -181,6 +268,24 @@ std::string ros2_type(std::string_view type) {
 bool is_bag(ByteSpan head) { return container_of(head) != Container::None; }
 
 bool is_bag_folder(const fs::path& folder) { return !bag_parts(folder).empty(); }
+
+std::vector<fs::path> split_bag_parts(const fs::path& first) {
+  const auto own = part_name(first);
+  if (!own || own->back != ".bag") return {first};
+  std::vector<std::pair<int, fs::path>> parts;
+  std::error_code ignored;
+  const fs::path folder = first.has_parent_path() ? first.parent_path() : ".";
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const auto other = part_name(entry.path());
+    if (other && other->front == own->front && other->back == own->back && entry.is_regular_file(ignored))
+      parts.emplace_back(other->number, first.parent_path() / entry.path().filename());
+  }
+  std::ranges::sort(parts);
+  if (parts.size() < 2 || parts.front().first != own->number) return {first};
+  std::vector<fs::path> files;
+  for (auto& part : parts) files.push_back(std::move(part.second));
+  return files;
+}
 
 std::unique_ptr<MessageSource> open_messages(const fs::path& path, Repairs* repairs) {
   const bool folder = fs::is_directory(path);
