@@ -14,7 +14,7 @@ namespace {
 void decode_evt(benchmark::State& state) {
   constexpr std::size_t kStreamEvents = 1'000'000, kBlock = 262144;
   const auto format = static_cast<EvtFormat>(state.range(0));
-  const std::string bytes = EvtEncoder(format).encode(generated_events(kStreamEvents, 1280, 720, 2));
+  const std::string bytes = AnyEvtEncoder(format).encode(generated_events(kStreamEvents, 1280, 720, 2));
   std::vector<Event> events;
   for (auto _ : state) {
     EvtDecoder decoder(format, 1280, 720);

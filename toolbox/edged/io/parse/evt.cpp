@@ -272,15 +272,26 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
   sink.add(state, state.high, bits(word, 32, 14), bits(word, 46, 14), bits(word, 60, 4) != 0);
 }
 
+EvtEncoder::EvtEncoder(EvtFormat format) : format_(format) {
+  EDGED_CHECK(format == EvtFormat::Evt3 || format == EvtFormat::Dat, "no encoder of this format");
+}
+
 const std::string& EvtEncoder::encode(std::span<const Event> events) {
   bytes_.clear();
   while (!events.empty()) events = events.subspan(write_row(events));
   return bytes_;
 }
 
-/// The number of leading events with the same stamp, row and polarity within 32 columns. They become one group.
+/// Writes the leading events with the same stamp, row and polarity within 32 columns, which become one group of EVT 3.
+/// Returns their number.
 std::size_t EvtEncoder::write_row(std::span<const Event> events) {
   const Event& a = events.front();
+  const auto t_us = static_cast<std::uint64_t>(to_ns(a.t) / 1000);
+  if (format_ == EvtFormat::Dat) {
+    append_number(bytes_, static_cast<std::uint32_t>(t_us));
+    append_number(bytes_, static_cast<std::uint32_t>(a.x | a.y << 14 | a.positive << 28));
+    return 1;
+  }
   std::uint32_t mask = 1;
   std::size_t count = 1;
   for (; count < events.size(); ++count) {
@@ -288,44 +299,8 @@ std::size_t EvtEncoder::write_row(std::span<const Event> events) {
     if (b.t != a.t || b.y != a.y || b.positive != a.positive || b.x <= before.x || b.x >= a.x + 32) break;
     mask |= 1U << (b.x - a.x);
   }
-  const auto t_us = static_cast<std::uint64_t>(to_ns(a.t) / 1000);
-  if (format_ == EvtFormat::Evt3) {
-    write_evt3(a, t_us, mask);
-  } else if (format_ == EvtFormat::Evt21 || format_ == EvtFormat::Evt21Legacy) {
-    write_evt21(a, t_us, mask);
-  } else if (format_ == EvtFormat::Evt4) {
-    write_evt4(a, t_us, mask);
-  } else {
-    for (const Event& event : events.first(count)) write_single(event, t_us);
-  }
+  write_evt3(a, t_us, mask);
   return count;
-}
-
-void EvtEncoder::write_single(const Event& e, std::uint64_t t_us) {
-  if (format_ == EvtFormat::Dat) {
-    append_number(bytes_, static_cast<std::uint32_t>(t_us));
-    append_number(bytes_, static_cast<std::uint32_t>(e.x | e.y << 14 | e.positive << 28));
-    return;
-  }
-  if (t_us >> 6 != high_) append_number(bytes_, static_cast<std::uint32_t>(0x8U << 28 | (t_us >> 6 & 0xFFFFFFF)));
-  high_ = t_us >> 6;
-  append_number(bytes_, static_cast<std::uint32_t>((e.positive ? 0x1U << 28 : 0U) | (t_us & 63) << 22 |
-                                                   unsigned{e.x} << 11 | e.y));
-}
-
-void EvtEncoder::write_evt21(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
-  if (t_us >> 6 != high_) put21(0x8ULL << 60 | (t_us >> 6 & 0xFFFFFFF) << 32);
-  high_ = t_us >> 6;
-  put21(std::uint64_t{e.positive} << 60 | (t_us & 63) << 54 | std::uint64_t{e.x} << 43 | std::uint64_t{e.y} << 32 |
-        mask);
-}
-
-void EvtEncoder::write_evt4(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
-  if (t_us >> 6 != high_) append_number(bytes_, static_cast<std::uint32_t>(0xEU << 28 | (t_us >> 6 & 0xFFFFFFF)));
-  high_ = t_us >> 6;
-  const std::uint32_t type = (mask == 1 ? 0xAU : 0xCU) + (e.positive ? 1U : 0U);
-  append_number(bytes_, static_cast<std::uint32_t>(type << 28 | (t_us & 63) << 22 | unsigned{e.x} << 11 | e.y));
-  if (mask != 1) append_number(bytes_, mask);
 }
 
 void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask) {
@@ -350,10 +325,6 @@ void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t ma
 
 void EvtEncoder::put3(unsigned type, std::uint64_t payload) {
   append_number(bytes_, static_cast<std::uint16_t>(type << 12 | payload));
-}
-
-void EvtEncoder::put21(std::uint64_t word) {
-  append_number(bytes_, format_ == EvtFormat::Evt21Legacy ? std::rotl(word, 32) : word);
 }
 
 }  // namespace edged

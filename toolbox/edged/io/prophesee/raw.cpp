@@ -9,10 +9,12 @@
 #include <array>
 #include <charconv>
 #include <map>
+#include <string>
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/geometry.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
+#include "edged/io/parse/evt.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
@@ -21,6 +23,18 @@ namespace {
 constexpr std::size_t kHeaderBytes = 65536;       // no header is longer
 constexpr std::size_t kEventBlockBytes = 262144;  // a multiple of every word
 constexpr std::size_t kBytesPerWrong = 50;        // with more wrong words, bytes may be missing
+
+/// Key of a header line that only this program knows: microseconds to be added to all stamps, as the counters of EVT 3
+/// (16.8 s) and DAT (71 min) cannot hold a time of day. Other programs ignore it and read stamps that begin at zero.
+constexpr std::string_view kTimeOffsetKey = "edged_time_offset_us";
+
+/// The content of the text lines at the beginning of a file.
+struct PropheseeHeader {
+  EvtFormat format = EvtFormat::Evt2;
+  std::optional<cv::Size> geometry;  ///< sensor [px], from the header or by the name of the camera
+  Duration time_offset{0};           ///< to be added to all stamps; only in files of this program
+  std::size_t bytes = 0;             ///< offset of the events
+};
 
 using HeaderFields = std::map<std::string, std::string, std::less<>>;
 
@@ -98,6 +112,44 @@ Duration header_time_offset(const HeaderFields& fields) {
   std::int64_t us = 0;
   std::from_chars(text.data(), text.data() + text.size(), us);
   return std::chrono::microseconds(std::clamp(us, -kMaxStampNs / 1000, kMaxStampNs / 1000));
+}
+
+/// Parses the first bytes of a file. Throws InputError, with `file`, if it has no events of a known encoding.
+PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
+  PropheseeHeader header;
+  HeaderFields fields = header_fields(as_text(head), header.bytes);
+  split_format(fields);
+  header.geometry = header_geometry(fields);
+  header.time_offset = header_time_offset(fields);
+  const std::string_view name = encoding_name(fields);
+  if (name == "EVT2") {
+    header.format = EvtFormat::Evt2;
+  } else if (name == "EVT21" || name == "EVT21ME") {
+    // Cameras that send whole words state it in the header.
+    const bool little = name == "EVT21" && field_or_empty(fields, "endianness") == "little";
+    header.format = little ? EvtFormat::Evt21 : EvtFormat::Evt21Legacy;
+  } else if (name == "EVT3") {
+    header.format = EvtFormat::Evt3;
+  } else if (name == "EVT4") {
+    header.format = EvtFormat::Evt4;
+  } else if (name == "DAT") {
+    header.format = EvtFormat::Dat;
+    constexpr int kEvent2d = 0x00, kEventCd = 0x0C, kRecordBytes = 8;
+    if (head.size() < header.bytes + 2) throw InputError::format("{}: nothing to read: ends in its header", file);
+    const int type = head[header.bytes], size = head[header.bytes + 1];
+    if ((type != kEvent2d && type != kEventCd) || size != kRecordBytes)
+      throw InputError::format(
+          "{}: holds records of type {} and {} bytes; only change events (types 0 and 12) of 8 "
+          "bytes can be read",
+          file, type, size);
+    header.bytes += 2;
+  } else {
+    throw InputError::format(
+        "{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3, EVT4 and DAT can: convert it with "
+        "metavision_file_to_hdf5",
+        file, name);
+  }
+  return header;
 }
 
 /// Reads events only, block by block.
@@ -280,43 +332,6 @@ class EvtFileWriter final : public RecordingWriter {
 }  // namespace
 
 bool is_prophesee_file(ByteSpan head) { return head.size() > 2 && head[0] == '%' && head[1] == ' '; }
-
-PropheseeHeader read_prophesee_header(ByteSpan head, const std::string& file) {
-  PropheseeHeader header;
-  HeaderFields fields = header_fields(as_text(head), header.bytes);
-  split_format(fields);
-  header.geometry = header_geometry(fields);
-  header.time_offset = header_time_offset(fields);
-  const std::string_view name = encoding_name(fields);
-  if (name == "EVT2") {
-    header.format = EvtFormat::Evt2;
-  } else if (name == "EVT21" || name == "EVT21ME") {
-    // Cameras that send whole words state it in the header.
-    const bool little = name == "EVT21" && field_or_empty(fields, "endianness") == "little";
-    header.format = little ? EvtFormat::Evt21 : EvtFormat::Evt21Legacy;
-  } else if (name == "EVT3") {
-    header.format = EvtFormat::Evt3;
-  } else if (name == "EVT4") {
-    header.format = EvtFormat::Evt4;
-  } else if (name == "DAT") {
-    header.format = EvtFormat::Dat;
-    constexpr int kEvent2d = 0x00, kEventCd = 0x0C, kRecordBytes = 8;
-    if (head.size() < header.bytes + 2) throw InputError::format("{}: nothing to read: ends in its header", file);
-    const int type = head[header.bytes], size = head[header.bytes + 1];
-    if ((type != kEvent2d && type != kEventCd) || size != kRecordBytes)
-      throw InputError::format(
-          "{}: holds records of type {} and {} bytes; only change events (types 0 and 12) of 8 "
-          "bytes can be read",
-          file, type, size);
-    header.bytes += 2;
-  } else {
-    throw InputError::format(
-        "{}: encoding `{}` cannot be read; EVT2, EVT21, EVT3, EVT4 and DAT can: convert it with "
-        "metavision_file_to_hdf5",
-        file, name);
-  }
-  return header;
-}
 
 Recording open_prophesee(const std::filesystem::path& file, const Rig* rig, const RecordingOptions& options) {
   const PropheseeHeader header = read_prophesee_header(BinaryFile(file).read(0, kHeaderBytes), file.string());

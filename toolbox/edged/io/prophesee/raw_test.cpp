@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(PropheseeFile, GivesBackEveryEvent) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(200'000, 1280, 720, 20);
-  const auto file = folder.write("a.bin", GetParam().header + EvtEncoder(GetParam().format).encode(events));
+  const auto file = folder.write("a.bin", GetParam().header + AnyEvtEncoder(GetParam().format).encode(events));
   const Recording recording = open_recording(file);
   const DatasetInfo& info = recording.dataset->info();
   EXPECT_TRUE(info.has_events && !info.has_frames && !info.has_imu);
@@ -66,7 +66,7 @@ TEST_P(PropheseeFile, GivesBackEveryEvent) {
 TEST_P(PropheseeFile, CutAnywhereItGivesWhatCameBefore) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(2000, 1280, 720, 20);
-  const std::string whole = GetParam().header + EvtEncoder(GetParam().format).encode(events);
+  const std::string whole = GetParam().header + AnyEvtEncoder(GetParam().format).encode(events);
   EXPECT_GT(expect_beginnings(folder, whole, events), 1900u);
   for (std::size_t percent = 0; percent < 100; ++percent) {
     const DamagedRead read = read_damaged(folder, cut_at(whole, percent));
@@ -77,7 +77,7 @@ TEST_P(PropheseeFile, CutAnywhereItGivesWhatCameBefore) {
 TEST_P(PropheseeFile, FlippedBitsAreSurvived) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(2000, 1280, 720, 100);
-  const std::string &header = GetParam().header, whole = header + EvtEncoder(GetParam().format).encode(events);
+  const std::string &header = GetParam().header, whole = header + AnyEvtEncoder(GetParam().format).encode(events);
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     // In every third file, damages the header, which may change the format.
@@ -101,7 +101,7 @@ TEST(PropheseeRaw, ALostByteCostsFewEvents) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(200'000, 1280, 720, 20);
   for (const EvtFormat format : {EvtFormat::Evt3, EvtFormat::Evt2, EvtFormat::Evt21Legacy, EvtFormat::Evt4}) {
-    const std::string words = EvtEncoder(format).encode(events);
+    const std::string words = AnyEvtEncoder(format).encode(events);
     const std::map<EvtFormat, std::string> names{{EvtFormat::Evt3, "EVT3"},
                                                  {EvtFormat::Evt2, "EVT2"},
                                                  {EvtFormat::Evt21Legacy, "EVT21"},
@@ -121,7 +121,7 @@ TEST(PropheseeRaw, ALostByteCostsFewEvents) {
 /// Of 25 pulses at input 2, 40 ms apart, each with both edges, between two events.
 std::string words_with_triggers(EvtFormat format) {
   const std::vector<Event> events = generated_events(2, 640, 480, 1);
-  std::string out = EvtEncoder(format).encode(events);
+  std::string out = AnyEvtEncoder(format).encode(events);
   const auto time_and_trigger = [&](std::int64_t t_us, unsigned value) {
     const auto high = static_cast<std::uint32_t>(t_us >> 6), low = static_cast<std::uint32_t>(t_us & 63);
     const std::uint32_t trigger = low << 22 | 2U << 8 | value;
@@ -162,7 +162,7 @@ TEST(PropheseeRaw, PulsesOfTheTriggerInputAreListedWithTheirPeriod) {
 }
 
 TEST(PropheseeRaw, RefusalsSayWhatIsWrongAndWhatToDo) {
-  const std::string evt2 = EvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
+  const std::string evt2 = AnyEvtEncoder(EvtFormat::Evt2).encode(generated_events(10, 100, 100, 1));
   EXPECT_THAT(refusal("% evt 2.0\n% end\n" + evt2), HasSubstr("--geometry"));
   EXPECT_THAT(refusal("% format HISTO3D;height=320;width=320\n% end\n"), HasSubstr("`HISTO3D`"));
   EXPECT_THAT(refusal("% evt 5.0\n% end\n" + evt2), AllOf(HasSubstr("`5.0`"), HasSubstr("metavision_file_to_hdf5")));
@@ -176,7 +176,7 @@ TEST(PropheseeRaw, TheRigGoesBeforeTheUsersSizeAndThatBeforeTheHeaders) {
   TempFolder folder;
   const std::vector<Event> events = generated_events(2000, 640, 480, 20);
   const auto file =
-      folder.write("a.raw", "% evt 2.0\n% geometry 640x480\n% end\n" + EvtEncoder(EvtFormat::Evt2).encode(events));
+      folder.write("a.raw", "% evt 2.0\n% geometry 640x480\n% end\n" + AnyEvtEncoder(EvtFormat::Evt2).encode(events));
   const auto count = [&](const Rig* rig, std::optional<cv::Size> geometry) {
     return read_all(*open_recording(file, rig, {.geometry = geometry}).dataset).events.size();
   };
@@ -190,7 +190,7 @@ TEST(PropheseeRaw, TheRigGoesBeforeTheUsersSizeAndThatBeforeTheHeaders) {
 
 TEST(PropheseeRaw, AFileMostlyOutsideItsSensorIsRefused) {
   const std::vector<Event> events = generated_events(5000, 1280, 720, 20);
-  EXPECT_THAT(refusal("% evt 3.0\n% geometry 320x320\n% end\n" + EvtEncoder(EvtFormat::Evt3).encode(events)),
+  EXPECT_THAT(refusal("% evt 3.0\n% geometry 320x320\n% end\n" + AnyEvtEncoder(EvtFormat::Evt3).encode(events)),
               HasSubstr("--geometry"));
 }
 

@@ -9,7 +9,7 @@
 
 #include "edged/io/calibration.hpp"
 #include "edged/io/open_recording.hpp"
-#include "edged/io/parse/evt.hpp"
+#include "edged/io/parse/evt_test_support.hpp"
 #include "edged/io/ros/bag/bag_test_support.hpp"
 
 namespace edged {
@@ -77,7 +77,7 @@ using Encode = std::function<std::string(const std::vector<Event>& events)>;
 
 /// Continues from packet to packet.
 Encode evt_encoding(EvtFormat format) {
-  return [encoder = EvtEncoder(format)](const std::vector<Event>& events) mutable { return encoder.encode(events); };
+  return [encoder = AnyEvtEncoder(format)](const std::vector<Event>& events) mutable { return encoder.encode(events); };
 }
 
 std::string encode_mono(const std::vector<Event>& events) {
