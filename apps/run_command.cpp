@@ -15,7 +15,7 @@
 #include "common/log.hpp"
 #include "common/source.hpp"
 #include "common/text.hpp"
-#include "edged/io/core/run_cameras.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "run/run.hpp"
 #include "run/run_folder.hpp"
 #include "run_outputs.hpp"

@@ -16,7 +16,6 @@
 #include "edged/core/measurements/recording_piece.hpp"
 #include "edged/io/aedat/aedat.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/run_cameras.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/io/text/sample_files.hpp"

@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Assigns the cameras of a recording to the cameras of a rig.
+// Assigns the cameras of a recording to the cameras of a rig, and chooses those of a run.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "edged/dataset.hpp"
+#include "edged/io/recording.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
@@ -51,5 +53,16 @@ struct NamedStreams {
 /// file: for the line.
 NamedStreams name_streams(const Rig* rig, Modality modality, const std::vector<std::string>& streams,
                           const std::vector<std::string>& wanted, const std::string& file);
+
+/// The cameras of a run by default: of each kind that the recording delivers the first, and one more of the rig whose
+/// view overlaps the first one's. Empty where there is none of these: then the first of each kind are used.
+std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info);
+
+/// Opens a recording with these cameras, else all, else the first of each kind.
+using OpenCameras = std::function<Recording(const std::vector<std::string>& cameras, bool all)>;
+
+/// Opens a recording with the cameras of stereo_cameras(), which it puts into `cameras`; where there are none and where
+/// not all cameras can be read, with the first of each kind. Throws as `open`.
+Recording open_with_stereo_cameras(const OpenCameras& open, std::vector<std::string>& cameras);
 
 }  // namespace edged

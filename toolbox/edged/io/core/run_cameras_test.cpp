@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/core/run_cameras.hpp"
+#include "edged/io/core/camera_names.hpp"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 // A chunk is one word (count and packing), the first stamp, then the stamps, rows, columns and polarities, each packed
 // separately: stamps and rows as runs of equal values, columns as steps of up to five neighbours. If runs are longer,
 // columns and polarities (12 bits), or these with the rows (24 bits), are stored for four events in three words.
-#include "edged/io/hdf5/ecf.hpp"
+#include "edged/io/hdf5/h5_filters.hpp"
 
 #include <array>
 

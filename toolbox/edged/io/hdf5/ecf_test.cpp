@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // ECF: bytes encoded by hand from the description of the format, generated events, damage.
-#include "edged/io/hdf5/ecf.hpp"
+#include "edged/io/hdf5/h5_filters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-#include "edged/io/hdf5/ecf.hpp"
+#include "edged/io/hdf5/h5_filters.hpp"
 
 namespace edged {
 

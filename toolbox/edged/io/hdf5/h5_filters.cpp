@@ -12,7 +12,6 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/compression.hpp"
-#include "edged/io/hdf5/ecf.hpp"
 
 namespace edged {
 namespace {

@@ -3,6 +3,8 @@
 // The reader of all layouts. Of the sources of events, frames and IMU samples, it reads the one that lags most.
 #include "edged/io/hdf5/hdf5.hpp"
 
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -15,6 +17,7 @@
 #include "edged/io/hdf5/h5_cameras.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"
+#include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
@@ -224,16 +227,16 @@ class Hdf5Dataset final : public StreamedDataset {
 
 [[noreturn]] void refuse_layout(const H5File& file) {
   constexpr std::size_t kMostListed = 20;
-  std::string known;
-  for (const Hdf5Layout& layout : hdf5_layouts())
-    known += fmt::format("{}{}{} ({})", known.empty() ? "" : ", ", layout.events,
-                         layout.events.empty() ? "/x, y, t, p" : "", layout.name);
-  const auto arrays = file.list(kMostListed + 1);
-  std::string held;
-  for (std::size_t i = 0; i < std::min(arrays.size(), kMostListed); ++i) held += (i > 0 ? ", " : "") + arrays[i];
+  const auto described = [](const Hdf5Layout& layout) {
+    return fmt::format("{}{} ({})", layout.events, layout.events.empty() ? "/x, y, t, p" : "", layout.name);
+  };
+  std::vector<std::string> held = file.list(kMostListed + 1);
+  const bool more = held.size() > kMostListed;
+  if (more) held.resize(kMostListed);
+  if (held.empty()) held = {"no data sets"};
   throw InputError::format("{}: no events in a layout that is known; looked for {}; the file holds {}{}",
-                           file.path().string(), known, held.empty() ? "no data sets" : held,
-                           arrays.size() > kMostListed ? " and more" : "");
+                           file.path().string(), fmt::join(texts_of(hdf5_layouts(), described), ", "),
+                           fmt::join(held, ", "), more ? " and more" : "");
 }
 
 bool holds_events(const fs::path& file) try {
@@ -258,16 +261,14 @@ std::optional<fs::path> find_hdf5_events(const fs::path& folder) {
   if (all.empty()) return std::nullopt;
   std::ranges::sort(all);
   std::ranges::copy_if(all, std::back_inserter(with_events), holds_events);
-  const auto not_left = [&](const fs::path& p) {
-    return fs::relative(p, folder).string().find("left") == std::string::npos;
-  };
   if (with_events.size() > 1) {
     std::vector<fs::path> left = with_events;
-    std::erase_if(left, not_left);
+    std::erase_if(
+        left, [&](const fs::path& p) { return fs::relative(p, folder).string().find("left") == std::string::npos; });
     if (left.size() == 1) return left.front();
-    std::string names;
-    for (const fs::path& p : with_events) names += (names.empty() ? "" : ", ") + p.string();
-    throw InputError::format("{}: events in several files: give one of {}", folder.string(), names);
+    const auto name = [](const fs::path& p) { return p.string(); };
+    throw InputError::format("{}: events in several files: give one of {}", folder.string(),
+                             fmt::join(texts_of(with_events, name), ", "));
   }
   // A file without events is refused when it is opened, with its content in the message.
   return with_events.empty() ? all.front() : with_events.front();

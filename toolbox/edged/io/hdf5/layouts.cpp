@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "edged/io/hdf5/ecf.hpp"
+#include "edged/io/hdf5/h5_filters.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 #include "edged/state.hpp"
 

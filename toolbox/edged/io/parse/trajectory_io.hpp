@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Trajectories as text: TUM, EuRoC csv and KITTI.
+// Trajectories as text, TUM, EuRoC csv, KITTI and others: columns and units by the heading or by the conventions of
+// programs.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +12,23 @@
 
 #include "edged/dataset.hpp"
 #include "edged/io/archive/source_path.hpp"
-#include "edged/io/parse/pose_table.hpp"
 #include "edged/io/parse/repairs.hpp"
+#include "edged/io/parse/text_table.hpp"
 #include "edged/state.hpp"
 
 namespace edged {
+
+/// The roles of a pose table are t, position x y z [m], unit quaternion x y z w.
+/// The lines `t tx ty tz qx qy qz qw` of the TUM RGB-D benchmark.
+TextTable tum_table(TimeUnit unit);
+/// The lines `t px py pz qw qx qy qz ...` of EuRoC.
+TextTable euroc_table();
+
+/// A line of such a table, as format_row().
+std::string pose_row(const TextTable& table, const StampedPose& pose, char separator);
+
+/// The columns with the other order of the quaternion.
+TextTable with_other_scalar(const TextTable& table);
 
 /// Called with the number and the error of each line that is left out.
 using DamageHandler = std::function<void(std::size_t line, const std::string& detail)>;

@@ -20,7 +20,7 @@
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/imu_table.hpp"
-#include "edged/io/parse/pose_table.hpp"
+#include "edged/io/parse/trajectory_io.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
