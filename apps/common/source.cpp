@@ -22,7 +22,6 @@
 #include "edged/io/aedat/aedat.hpp"
 #include "edged/io/calibration.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/geometry.hpp"
 #include "edged/io/core/replaced_streams.hpp"
 #include "edged/io/open_recording.hpp"
 #include "edged/io/parse/text_parsing.hpp"

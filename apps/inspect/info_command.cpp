@@ -10,7 +10,7 @@
 #include "common/command.hpp"
 #include "common/interrupt.hpp"
 #include "edged/core/check.hpp"
-#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "inspect/survey.hpp"
 
 namespace edged {

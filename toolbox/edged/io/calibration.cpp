@@ -15,7 +15,6 @@
 #include "edged/core/check.hpp"
 #include "edged/core/resources.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
-#include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/parse/text_parsing.hpp"

@@ -15,7 +15,6 @@
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat.hpp"
 #include "edged/io/archive/bytes.hpp"
-#include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/dataset_folders.hpp"
 #include "edged/io/event_stream/event_stream.hpp"
 #include "edged/io/hdf5/hdf5.hpp"

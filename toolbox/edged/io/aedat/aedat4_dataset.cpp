@@ -12,7 +12,6 @@
 #include "edged/core/angles.hpp"
 #include "edged/io/archive/compression.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/geometry.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 
 namespace edged {

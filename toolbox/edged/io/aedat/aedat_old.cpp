@@ -12,7 +12,7 @@
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"
 #include "edged/io/aedat/aedat.hpp"
-#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "edged/camera/field_of_view.hpp"
@@ -87,12 +88,16 @@ std::vector<std::string> rig_names(const Rig* rig, Modality modality) {
 constexpr double kUsualDistance_m = 3.0;   // of what the cameras see
 constexpr double kLeastSharedView = 0.25;  // fewer features have a match than tracking needs
 
-/// Null where the rig does not name it: its only camera of that kind is taken for it then.
-const RigCamera* named_camera(const Rig& rig, const RecordedCamera& recorded) {
-  const auto found = std::ranges::find_if(rig.cameras, [&](const RigCamera& camera) {
-    return camera.name == recorded.name && camera.modality == recorded.modality;
-  });
+/// Null where the rig does not name it.
+const RigCamera* named_camera(const Rig& rig, Modality modality, std::string_view name) {
+  const auto fits = [&](const RigCamera& camera) { return camera.name == name && camera.modality == modality; };
+  const auto found = std::ranges::find_if(rig.cameras, fits);
   return found == rig.cameras.end() ? nullptr : &*found;
+}
+
+std::optional<int> pixels(std::string_view text) {
+  const auto value = parse_whole<int>(text);
+  return value && *value >= 1 && *value <= 16384 ? value : std::nullopt;
 }
 
 }  // namespace
@@ -181,9 +186,9 @@ std::vector<std::string> stereo_cameras(const Rig& rig, const DatasetInfo& info)
     const auto first = std::ranges::find(recorded, modality, &RecordedCamera::modality);
     if (first == recorded.end()) continue;
     names.push_back(first->name);
-    const RigCamera* one = named_camera(rig, *first);
+    const RigCamera* one = named_camera(rig, modality, first->name);
     const auto second = std::find_if(std::next(first), recorded.end(), [&](const RecordedCamera& camera) {
-      const RigCamera* other = camera.modality == modality ? named_camera(rig, camera) : nullptr;
+      const RigCamera* other = camera.modality == modality ? named_camera(rig, modality, camera.name) : nullptr;
       return one && other && shared_view(*one, *other, kUsualDistance_m) >= kLeastSharedView;
     });
     if (second == recorded.end()) continue;
@@ -210,6 +215,42 @@ Recording open_with_stereo_cameras(const OpenCameras& open, std::vector<std::str
   if (info.more_cameras.empty() || cameras.size() == recorded_cameras(info).size()) return std::move(*recording);
   recording.reset();
   return open(cameras, false);
+}
+
+const RigCamera* find_camera(const Rig& rig, Modality modality, std::string_view name) {
+  const RigCamera* named = named_camera(rig, modality, name);
+  return named ? named : rig.find(modality);
+}
+
+std::optional<cv::Size> parse_geometry(std::string_view text) {
+  const std::size_t cut = text.find('x');
+  if (cut == std::string_view::npos) return std::nullopt;
+  const auto width = pixels(text.substr(0, cut)), height = pixels(text.substr(cut + 1));
+  return width && height ? std::optional(cv::Size(*width, *height)) : std::nullopt;
+}
+
+void warn_of_other_lens(const std::string& file, double focal_px, const Rig& rig, Modality modality,
+                        std::string_view name) {
+  constexpr double kTolerance = 0.02;
+  const RigCamera* camera = find_camera(rig, modality, name);
+  if (!camera || std::abs(focal_px / camera->model.mean_focal() - 1.0) <= kTolerance) return;
+  spdlog::warn(fmt::format("{}: focal length {:.1f} px, but the rig {} has {:.1f} px: is it the right one?", file,
+                           focal_px, rig.name, camera->model.mean_focal()));
+}
+
+cv::Size event_sensor_size(const std::filesystem::path& file, std::optional<cv::Size> said, const Rig* rig,
+                           std::string_view name) {
+  if (const RigCamera* camera = rig ? find_camera(*rig, Modality::Events, name) : nullptr) {
+    const cv::Size size(camera->model.width(), camera->model.height());
+    if (said && *said != size)
+      spdlog::warn(fmt::format(
+          "{}: the sensor has {} x {} px, but the event camera of rig {} has {} x {} px: is it the right one?",
+          file.string(), said->width, said->height, rig->name, size.width, size.height));
+    return size;
+  }
+  if (said) return *said;
+  throw UnknownSensorSize(
+      fmt::format("{}: does not hold the size of its sensor; give --geometry WIDTHxHEIGHT", file.string()));
 }
 
 }  // namespace edged

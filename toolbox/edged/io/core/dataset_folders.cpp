@@ -3,7 +3,6 @@
 #include "edged/io/core/dataset_folders.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "edged/io/parse/text_table.hpp"

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The layout of the folders of the Event-Camera Dataset and of EuRoC. Internal to io.
+// The layout of the folders of the Event-Camera Dataset and of EuRoC, and their calibrations. Internal to io.
 #pragma once
 
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 
+#include "edged/io/calibration_data.hpp"
 #include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
 
@@ -31,5 +32,8 @@ inline constexpr int kEcdWidth = 240, kEcdHeight = 180;  ///< DAVIS240, the sens
 
 /// The folder itself or its mav0: the one that holds cam0 or imu0.
 std::optional<SourcePath> find_mav0(const SourcePath& folder);
+
+/// load_calibration(), also from files in an archive.
+Calibration read_calibration(const SourcePath& path, const CalibrationOptions& options = {});
 
 }  // namespace edged

@@ -6,7 +6,6 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 

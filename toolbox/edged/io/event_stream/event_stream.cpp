@@ -9,7 +9,7 @@
 #include <array>
 
 #include "edged/core/check.hpp"
-#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 
 namespace edged {

@@ -9,15 +9,14 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/geometry.hpp"
 
 namespace edged {
 namespace fs = std::filesystem;
 namespace {
 
 std::optional<H5Images> find_images(const H5File& file, const Hdf5Layout& layout, std::size_t camera) {
-  auto pixels = file.find_named(path_of_camera(layout.images, camera)),
-       stamps = file.find_named(path_of_camera(layout.image_stamps, camera));
+  auto pixels = file.find(path_of_camera(layout.images, camera)),
+       stamps = file.find(path_of_camera(layout.image_stamps, camera));
   if (!pixels || !stamps || pixels->shape().size() < 3 || pixels->shape().size() > 4) return std::nullopt;
   return H5Images{std::move(*pixels), H5Stamps(std::move(*stamps))};
 }
@@ -34,7 +33,7 @@ std::optional<cv::Size> stated_sensor(const H5File& file, const Hdf5Layout& layo
     if (width && height) return pair(static_cast<double>(*width), static_cast<double>(*height));
     if (const auto text = file.text_attribute(object, "geometry")) return parse_geometry(*text);
   }
-  const auto sensor = file.find_named(path_of_camera(layout.sensor, camera));
+  const auto sensor = file.find(path_of_camera(layout.sensor, camera));
   if (!sensor || sensor->rows() != 2 || sensor->columns() != 1) return std::nullopt;
   try {
     const auto size = sensor->read<double>(0, 2);

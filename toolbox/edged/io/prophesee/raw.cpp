@@ -12,7 +12,7 @@
 #include <string>
 
 #include "edged/core/check.hpp"
-#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/parse/evt.hpp"
 #include "edged/io/parse/text_parsing.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Converts messages to measurements.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
-#include "edged/io/core/geometry.hpp"
 #include "edged/io/core/imu_interpolator.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
 #include "edged/io/ros/bag/open_messages.hpp"

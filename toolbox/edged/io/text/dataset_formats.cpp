@@ -14,10 +14,8 @@
 #include <vector>
 
 #include "edged/core/check.hpp"
-#include "edged/io/core/calibration_source.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/dataset_folders.hpp"
-#include "edged/io/core/geometry.hpp"
 #include "edged/io/parse/imu_table.hpp"
 #include "edged/io/parse/trajectory_io.hpp"
 #include "edged/io/text/event_text.hpp"

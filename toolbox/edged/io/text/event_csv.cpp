@@ -12,7 +12,7 @@
 #include <iterator>
 
 #include "edged/core/check.hpp"
-#include "edged/io/core/geometry.hpp"
+#include "edged/io/core/camera_names.hpp"
 #include "edged/io/parse/text_table.hpp"
 #include "edged/io/text/text_dataset.hpp"
 
