@@ -11,7 +11,7 @@
 
 #include "common/even_sample.hpp"
 #include "edged/final_trajectory.hpp"
-#include "edged/io/ros/bag/mcap.hpp"
+#include "edged/io/ros/bag/message_records.hpp"
 #include "outputs/foxglove.hpp"
 #include "outputs/snapshots.hpp"
 #include "run/run_summary.hpp"

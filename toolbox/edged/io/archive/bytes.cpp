@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reading and writing of binary files.
 #include "edged/io/archive/bytes.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "edged/io/archive/record_file.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace edged {
 

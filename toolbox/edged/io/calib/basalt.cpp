@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/parse/text_parsing.hpp"
 

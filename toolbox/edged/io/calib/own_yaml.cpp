@@ -9,7 +9,6 @@
 
 #include "edged/camera/lens_table.hpp"
 #include "edged/core/angles.hpp"
-#include "edged/core/check.hpp"
 #include "edged/io/calib/calibration_readers.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/parse/image_codec.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Access to yaml and the xml of OpenCV, with errors that name file, line and key.
 #include "edged/io/calib/yaml_reader.hpp"
 
 #include <spdlog/fmt/ranges.h>

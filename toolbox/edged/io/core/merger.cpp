@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Sorts measurements, and limits how long they are held.
 #include "edged/io/core/merger.hpp"
 
 #include <spdlog/fmt/fmt.h>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Checks the bounds and restores the order of pushed measurements.
 #include "edged/io/core/streamed_dataset.hpp"
 
 #include <spdlog/fmt/fmt.h>

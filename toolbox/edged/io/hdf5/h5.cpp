@@ -210,7 +210,9 @@ H5Handle H5File::open_data(const std::string& path, std::size_t cache_bytes) con
   return {H5Dopen2(file_.get(), path.c_str(), access.get()), H5Dclose};
 }
 
-std::optional<H5Array> H5File::find(const std::string& path) const try {
+std::optional<H5Array> H5File::find(std::string_view named) const try {
+  if (named.empty()) return std::nullopt;
+  const std::string path(named);
   H5Handle data = open_data(path, kUsualCacheBytes);
   if (!data) return std::nullopt;
   // A chunk that exceeds the cache is decompressed again for each block of rows.

@@ -110,12 +110,8 @@ class H5File {
   /// zeros, and compressed ones throw Damage.
   explicit H5File(const std::filesystem::path& file);
 
-  /// Nothing if there is no such data set or it is not readable.
-  std::optional<H5Array> find(const std::string& path) const;
-  /// As find(); nothing for the path "".
-  std::optional<H5Array> find_named(std::string_view path) const {
-    return path.empty() ? std::nullopt : find(std::string(path));
-  }
+  /// Nothing if there is no such data set or it is not readable, and for the path "".
+  std::optional<H5Array> find(std::string_view path) const;
   bool has(const std::string& path) const;
 
   /// An attribute of an object: a text or an integer.

@@ -8,7 +8,6 @@
 #include <lzf.h>
 
 #include <cstring>
-#include <span>
 
 #include "edged/core/check.hpp"
 #include "edged/io/archive/compression.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Writes data sets that grow by whole chunks.
 #include "edged/io/hdf5/hdf5.hpp"
 
 #include <deque>

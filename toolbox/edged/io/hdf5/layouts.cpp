@@ -113,7 +113,7 @@ H5Handle fields_type() {
 }
 
 Duration offset_of(const H5File& file, std::string_view path) try {
-  const auto array = path.empty() ? std::nullopt : file.find(std::string(path));
+  const auto array = file.find(path);
   if (!array || array->rows() == 0) return Duration(0);
   const Timestamp offset = array->floating() ? stamp_of(array->read<double>(0, 1).front(), 1000)
                                              : stamp_of(array->read<std::int64_t>(0, 1).front(), 1000);
@@ -181,7 +181,7 @@ std::optional<H5Events> H5Events::find(const H5File& file, const Hdf5Layout& lay
   if (camera > 0 && (root.empty() || root == layout.events)) return std::nullopt;
   const Duration offset = offset_of(file, layout.offset);
   std::vector<H5Array> arrays;
-  if (auto one = root.empty() ? std::nullopt : file.find(root)) {
+  if (auto one = file.find(root)) {
     if (!has_event_shape(*one)) return std::nullopt;
     const Kind kind = one->compound() ? Kind::Fields : Kind::Rows;
     arrays.push_back(std::move(*one));
@@ -249,8 +249,7 @@ std::optional<Timestamp> H5Events::last() const try {
 }
 
 std::optional<H5Imu> H5Imu::find(const H5File& file, const Hdf5Layout& layout) {
-  auto gyro = file.find_named(layout.gyro), accel = file.find_named(layout.accel),
-       stamps = file.find_named(layout.imu_stamps);
+  auto gyro = file.find(layout.gyro), accel = file.find(layout.accel), stamps = file.find(layout.imu_stamps);
   if (!gyro || !stamps || gyro->columns() != (accel ? 3U : 6U) || (accel && accel->columns() != 3)) return std::nullopt;
   return H5Imu(std::move(*gyro), std::move(accel), H5Stamps(std::move(*stamps)));
 }

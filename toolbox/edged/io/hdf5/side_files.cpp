@@ -5,7 +5,6 @@
 #include "edged/io/hdf5/side_files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -71,7 +70,7 @@ std::function<std::optional<Timestamp>(std::string_view)> microseconds_in(const 
 /// Start and end of the exposure in seconds.
 std::optional<Timestamp> middle_of_exposure(std::string_view line) {
   FieldReader fields(line);
-  const auto start = parse_seconds(fields.next()), end = parse_seconds(fields.next());
+  const auto start = parse_stamp(fields.next(), TimeUnit::Seconds), end = parse_stamp(fields.next(), TimeUnit::Seconds);
   if (!start || !end) return std::nullopt;
   return *start + (*end - *start) / 2;
 }
@@ -181,7 +180,8 @@ std::function<std::optional<Timestamp>(std::string_view)> stamps_in(const SideNa
   const auto exposures = lengths ? std::make_shared<LineReader>(*lengths) : nullptr;
   return [exposures, parse = microseconds_in(file)](std::string_view line) {
     const auto exposure = exposures ? exposures->next() : std::nullopt;
-    const auto length = exposure ? parse_microseconds(FieldReader(exposure->text).next()) : std::nullopt;
+    const auto length =
+        exposure ? parse_stamp(FieldReader(exposure->text).next(), TimeUnit::Microseconds) : std::nullopt;
     auto t = parse(line);
     if (t && length) *t += length->time_since_epoch() / 2;
     return t;
@@ -266,8 +266,8 @@ Trajectory read_poses(const H5Array& poses, const H5Stamps& stamps, bool inverse
 std::optional<GroundTruth> read_truth(const fs::path& path, const Hdf5Layout& layout, const std::string& frame,
                                       Repairs& repairs) try {
   const H5File file(path);
-  const auto poses = file.find_named(layout.poses);
-  auto stamps = file.find_named(layout.pose_stamps);
+  const auto poses = file.find(layout.poses);
+  auto stamps = file.find(layout.pose_stamps);
   if (!poses || !stamps || (poses->columns() != 7 && poses->columns() != 16)) return std::nullopt;
   const auto bad = [&](const char* kind, const std::string& detail) {
     repairs.add(std::string("groundtruth: ") + kind, path.string() + ": " + detail);

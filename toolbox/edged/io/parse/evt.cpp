@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The words of each format.
 #include "edged/io/parse/evt.hpp"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
-#include <string_view>
 
 #include "edged/io/archive/bytes.hpp"
 #include "edged/io/archive/source_path.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "edged/core/angles.hpp"
 #include "edged/core/check.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Counts damage.
 #include "edged/io/parse/repairs.hpp"
 
 #include <spdlog/fmt/fmt.h>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads blocks, lines, fields, numbers and stamps of text files.
 #include "edged/io/parse/text_parsing.hpp"
 
 #include <algorithm>

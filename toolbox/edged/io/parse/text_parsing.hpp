@@ -3,7 +3,6 @@
 // Reading large text files in bounded memory, and numbers and stamps without rounding.
 #pragma once
 
-#include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -116,17 +115,6 @@ std::optional<T> parse_whole(std::string_view field) {
   return error == std::errc() && end == field.data() + field.size() ? std::optional(value) : std::nullopt;
 }
 
-/// The next N fields as finite numbers. False if one is missing or no number.
-template <std::size_t N>
-bool read_numbers(FieldReader& fields, std::array<double, N>& numbers) {
-  for (double& x : numbers) {
-    const auto number = parse_number(fields.next());
-    if (!number) return false;
-    x = *number;
-  }
-  return true;
-}
-
 /// Parses "s", "ms", "us" or "ns". Nothing for any other text.
 std::optional<TimeUnit> parse_time_unit(std::string_view text);
 /// The inverse of parse_time_unit().
@@ -135,11 +123,6 @@ const char* unit_name(TimeUnit unit);
 /// A decimal number in that unit, also with an exponent, exact to the nanosecond (further digits are rounded half up).
 /// Nothing if it is no number or out of range.
 std::optional<Timestamp> parse_stamp(std::string_view field, TimeUnit unit);
-
-inline std::optional<Timestamp> parse_seconds(std::string_view field) { return parse_stamp(field, TimeUnit::Seconds); }
-inline std::optional<Timestamp> parse_microseconds(std::string_view field) {
-  return parse_stamp(field, TimeUnit::Microseconds);
-}
 
 /// Parses an integer number of nanoseconds.
 std::optional<Timestamp> parse_nanoseconds(std::string_view field);

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Parses the headings of text files.
 #include "edged/io/parse/text_table.hpp"
 
 #include <spdlog/fmt/ranges.h>

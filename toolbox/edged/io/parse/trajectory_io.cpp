@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes trajectories.
 #include "edged/io/parse/trajectory_io.hpp"
 
 #include <spdlog/fmt/ranges.h>
@@ -132,7 +131,13 @@ ParseLine parse_pose(const TextTable& table) {
 ParsedLine parse_kitti(std::string_view line, std::size_t index) {
   FieldReader fields(line);
   std::array<double, 12> v;
-  if (!read_numbers(fields, v) || !fields.rest().empty()) return {std::nullopt, "not the 12 finite numbers of [R | t]"};
+  bool all = true;
+  for (double& x : v) {
+    const auto number = parse_number(fields.next());
+    all = all && number;
+    x = number.value_or(0.0);
+  }
+  if (!all || !fields.rest().empty()) return {std::nullopt, "not the 12 finite numbers of [R | t]"};
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> T(v.data());
   const Eigen::Matrix3d R = T.leftCols<3>();
   const double deviation = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Converts measurements to messages.
 #include "edged/io/ros/ros.hpp"
 
 #include <algorithm>
@@ -9,8 +8,7 @@
 
 #include "edged/core/check.hpp"
 #include "edged/io/parse/text_parsing.hpp"
-#include "edged/io/ros/bag/mcap.hpp"
-#include "edged/io/ros/bag/open_messages.hpp"
+#include "edged/io/ros/bag/message_records.hpp"
 #include "edged/io/ros/messages/messages.hpp"
 
 namespace edged {

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Parses and sorts the events of events.txt.
 #include "edged/io/text/event_text.hpp"
 
 #include <algorithm>

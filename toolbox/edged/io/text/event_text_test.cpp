@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::optional<std::int64_t> ns(std::string_view text) {
-  const auto t = parse_seconds(text);
+  const auto t = parse_stamp(text, TimeUnit::Seconds);
   if (!t) return std::nullopt;
   return to_ns(*t);
 }
@@ -41,7 +41,7 @@ TEST(Seconds, PrintAndReadBack) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 1000; ++i) {
     const auto t = timestamp_from_ns(static_cast<std::int64_t>(random() >> 2) - (std::int64_t{1} << 60));
-    EXPECT_EQ(parse_seconds(format_seconds(t)), t);
+    EXPECT_EQ(parse_stamp(format_seconds(t), TimeUnit::Seconds), t);
   }
 }
 

@@ -178,7 +178,7 @@ class Bag final : public RecordSource {
     if (topic_of_connection_.contains(id)) return;
     const BagFields fields(data);
     topic_of_connection_[id] =
-        describe_topic(header.text("topic"), fields.text("type"), fields.text("message_definition"));
+        topic_index(topics_, header.text("topic"), fields.text("type"), fields.text("message_definition"));
   }
 
   /// The position of a chunk, its time span, and its number of messages of each connection.
@@ -190,7 +190,7 @@ class Bag final : public RecordSource {
     for (auto left = header.number<std::uint32_t>("count"); left > 0; --left) {
       const auto connection = topic_of_connection_.find(counts.number<std::uint32_t>());
       if (connection == topic_of_connection_.end()) throw Damage("unknown connection");
-      count_messages(connection->second, counts.number<std::uint32_t>());
+      topics_[connection->second].count += counts.number<std::uint32_t>();
       topics.push_back(connection->second);
     }
     index_[header.number<std::uint64_t>("chunk_pos")] = std::move(topics);

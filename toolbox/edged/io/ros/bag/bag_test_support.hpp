@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "edged/io/archive/compression.hpp"
-#include "edged/io/ros/bag/mcap.hpp"
+#include "edged/io/ros/bag/message_records.hpp"
 #include "edged/io/ros/bag/open_messages.hpp"
 #include "edged/io/ros/messages/messages.hpp"
 #include "edged/io/test_support.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // The records of an MCAP file, with a summary as index.
-#include "edged/io/ros/bag/mcap.hpp"
+#include "edged/io/ros/bag/message_records.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <zlib.h>
@@ -174,7 +174,8 @@ class Mcap final : public RecordSource {
     const auto& [type, definition] = schema->second;
     if (encoding == "ros1") wire_ = Wire::Ros1;
     const bool ros = encoding == "cdr" || encoding == "ros1";
-    topic_of_channel_[id] = describe_topic(topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
+    topic_of_channel_[id] =
+        topic_index(topics_, topic, ros ? type : fmt::format("{} in {}", type, encoding), definition);
   }
 
   std::optional<std::size_t> topic_of(std::uint16_t channel) const {
@@ -202,7 +203,7 @@ class Mcap final : public RecordSource {
     for (auto left = record.number<std::uint32_t>() / 10; left > 0; --left) {
       const auto topic = topic_of(record.number<std::uint16_t>());
       const auto count = record.number<std::uint64_t>();
-      if (topic) count_messages(*topic, count);
+      if (topic) topics_[*topic].count += count;
     }
   }
 

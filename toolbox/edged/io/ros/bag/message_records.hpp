@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The messages in the records of ROS 1 bags and MCAP files: reading and writing.
+// The messages in the records of ROS 1 bags and MCAP files, reading and writing: of MCAP files with messages of any
+// type.
 #pragma once
 
 #include <map>
@@ -50,16 +51,14 @@ class RecordSource : public MessageSource, protected RecordFile {
 
   Bytes index_at(std::uint64_t begin, std::uint64_t end);
   void take_index(ByteSpan index);
-  std::size_t describe_topic(std::string_view name, std::string_view type, std::string_view definition) {
-    return topic_index(topics_, name, type, definition);
-  }
   /// Once a compressed chunk was located, only chunks are searched: compressed data contain pieces of records.
   void note_compression(std::string_view method) { packed_ = packed_ || (!method.empty() && method != "none"); }
   bool packed() const { return packed_; }
-  void count_messages(std::size_t topic, std::size_t count) { topics_[topic].count += count; }
   /// Extends the time span of the messages.
   void extend(Timestamp t);
   void repair(const std::string& kind, const std::string& detail, std::size_t count = 1);
+
+  std::vector<Topic> topics_;
 
  private:
   void count_damage(std::uint64_t at, const std::string& reason, std::optional<std::uint64_t> next) final;
@@ -72,7 +71,6 @@ class RecordSource : public MessageSource, protected RecordFile {
 
   std::string name_;
   Repairs* repairs_;
-  std::vector<Topic> topics_;
   std::map<std::size_t, std::size_t> read_;  ///< number of messages of each topic
   bool packed_ = false;
   bool compared_ = false;  ///< with the numbers of the index
@@ -129,6 +127,36 @@ class RecordWriter : public MessageSink {
  private:
   std::string records_;                                   ///< the chunk that is being filled
   std::map<std::size_t, std::vector<IndexEntry>> index_;  ///< index of that chunk, by topic
+};
+
+/// The type of the messages of a topic.
+struct McapTopic {
+  std::string_view name, encoding;                  ///< "/tf", "json"
+  std::string_view type, type_encoding, type_text;  ///< "foxglove.FrameTransform", "jsonschema", the schema
+};
+
+/// Chunks are compressed by "", "lz4" or "zstd". Negative times become zero.
+class McapWriter final : public RecordWriter {
+ public:
+  /// profile: "ros2", or "" for none.
+  McapWriter(const std::filesystem::path& file, std::string_view profile, const ChunkOptions& options = {"zstd"});
+
+  Wire wire() const override { return Wire::Cdr; }
+  /// A topic of ROS 2.
+  std::size_t add_topic(std::string_view name, std::string_view type, const MessageDefinition& definition) override;
+  /// A topic of any type.
+  std::size_t add_topic(const McapTopic& topic);
+  void write_metadata(std::string_view name, const std::map<std::string, std::string>& values);
+
+ private:
+  std::string message_record(std::size_t topic, Timestamp t, std::string_view message) const override;
+  std::string chunk_record(const ChunkInfo& chunk, std::string_view packed) const override;
+  std::string index_record(std::size_t topic, const std::vector<IndexEntry>& entries) const override;
+  void write_summary() override;
+  std::string statistics() const;
+  std::string chunk_index(const ChunkInfo& chunk) const;
+
+  std::vector<std::string> metadata_index_;  ///< records
 };
 
 }  // namespace edged

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the encodings of event packets.
 #include "edged/io/ros/messages/event_packets.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes messages field by field, in the order of their definitions.
 #include "edged/io/ros/messages/messages.hpp"
 
 #include <algorithm>
@@ -278,13 +277,6 @@ ExternalSample read_external(std::string_view type, WireReader message) {
   return sample;
 }
 
-AirPressure pressure_of_height(const HeightSample& height) {
-  const double part = 1.0 - height.height_m / kAtmosphere_m;
-  const double pressure_pa = kSeaLevel_pa * std::pow(part, 1.0 / kAtmosphereExponent);
-  const double sigma_pa = height.sigma_m * pressure_pa / (kAtmosphere_m * kAtmosphereExponent * part);
-  return {pressure_pa, sigma_pa * sigma_pa};
-}
-
 std::string_view external_type(std::size_t place) {
   constexpr std::array<std::string_view, kExternalSensors> kTypes = {"sensor_msgs/FluidPressure",
                                                                      "geometry_msgs/TwistWithCovarianceStamped"};
@@ -294,9 +286,11 @@ std::string_view external_type(std::size_t place) {
 std::string external_message(Wire wire, const ExternalSample& sample) {
   WireWriter out(wire);
   if (const auto* height = std::get_if<HeightSample>(&sample)) {
-    const AirPressure pressure = pressure_of_height(*height);
+    const double part = 1.0 - height->height_m / kAtmosphere_m;  // the reverse of the standard atmosphere
+    const double pressure_pa = kSeaLevel_pa * std::pow(part, 1.0 / kAtmosphereExponent);
+    const double sigma_pa = height->sigma_m * pressure_pa / (kAtmosphere_m * kAtmosphereExponent * part);
     out.header(height->t, "body");
-    out.numbers(std::array{pressure.pressure_pa, pressure.variance_pa2});
+    out.numbers(std::array{pressure_pa, sigma_pa * sigma_pa});
     return out.message();
   }
   constexpr double kNotMeasured = 1e6;  // a variance [m^2/s^2], by the convention of drivers

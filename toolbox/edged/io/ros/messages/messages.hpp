@@ -70,12 +70,6 @@ std::string_view external_type(std::size_t place);
 /// The message of that type, which read_external() reads back.
 std::string external_message(Wire wire, const ExternalSample& sample);
 
-/// The reverse of the standard atmosphere. variance_pa2: 0 where the height has no sigma.
-struct AirPressure {
-  double pressure_pa, variance_pa2;
-};
-AirPressure pressure_of_height(const HeightSample& height);
-
 /// The pose of a TransformStamped, Odometry or PoseStamped.
 struct NamedPose {
   StampedPose pose;
