@@ -157,14 +157,6 @@ std::vector<Timestamp> H5Stamps::read(std::uint64_t first, std::uint64_t count) 
   return stamps;
 }
 
-std::optional<Timestamp> H5Stamps::last() const try {
-  if (rows() == 0) return std::nullopt;
-  const Timestamp t = read(rows() - 1, 1).front();
-  return t == kNoStamp ? std::nullopt : std::optional(t);
-} catch (const Damage&) {
-  return std::nullopt;
-}
-
 H5Events::H5Events(Kind kind, std::vector<H5Array> arrays, Duration offset, bool cut)
     : kind_(kind), arrays_(std::move(arrays)), offset_(offset), cut_(cut), rows_(arrays_.front().rows()) {
   for (const H5Array& array : arrays_) {

@@ -48,7 +48,6 @@ class H5Stamps {
   std::uint64_t rows() const { return array_.rows(); }
   /// Timestamp::min() for a stamp out of range. Throws Damage.
   std::vector<Timestamp> read(std::uint64_t first, std::uint64_t count) const;
-  std::optional<Timestamp> last() const;
 
  private:
   H5Array array_;
