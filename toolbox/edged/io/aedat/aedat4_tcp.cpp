@@ -49,12 +49,8 @@ class TcpConnection {
   ~TcpConnection() {
     if (socket_ >= 0) ::close(socket_);
   }
-  TcpConnection(TcpConnection&& other) noexcept
-      : name_(std::move(other.name_)),
-        socket_(std::exchange(other.socket_, -1)),
-        open_(other.open_),
-        received_(std::move(other.received_)) {}
-  TcpConnection& operator=(TcpConnection&&) = delete;
+  TcpConnection(const TcpConnection&) = delete;
+  TcpConnection& operator=(const TcpConnection&) = delete;
 
   const std::string& name() const { return name_; }  ///< "HOST:PORT", for messages
   int descriptor() const { return socket_; }         ///< for poll()
@@ -130,7 +126,7 @@ Aedat4Header wait_for_header(TcpConnection& connection) {
 
 /// A server, with the streams that are read from it.
 struct LiveStream {
-  TcpConnection connection;
+  std::unique_ptr<TcpConnection> connection;
   Aedat4Header header;
   std::size_t first = 0;    ///< place of its first stream among those of all servers
   std::uint64_t taken = 0;  ///< bytes of packets so far
@@ -156,24 +152,24 @@ class Aedat4Live final : public Aedat4Dataset {
       bool any = false, open = false;
       for (LiveStream& stream : streams_) {
         any = take_whole_packets(stream) || any;
-        open = open || stream.connection.open();
+        open = open || stream.connection->open();
       }
       if (any) return true;
       if (!open) break;
       std::vector<TcpConnection*> connections;
-      for (LiveStream& stream : streams_) connections.push_back(&stream.connection);
+      for (LiveStream& stream : streams_) connections.push_back(stream.connection.get());
       receive_some(connections);
     }
     for (const LiveStream& stream : streams_)
-      if (!stream.connection.received().empty())
+      if (!stream.connection->received().empty())
         repairs_.add("stream: cut within a packet",
-                     fmt::format("tcp://{}: ended within a packet", stream.connection.name()));
+                     fmt::format("tcp://{}: ended within a packet", stream.connection->name()));
     return false;
   }
 
   /// False if no packet was complete.
   bool take_whole_packets(LiveStream& stream) {
-    const ByteSpan received = stream.connection.received();
+    const ByteSpan received = stream.connection->received();
     std::size_t at = 0;
     while (received.size() - at >= kPacketHeadBytes) {
       const Aedat4PacketHead packet = parse_packet_head(received.subspan(at), stream.header.streams);
@@ -181,16 +177,16 @@ class Aedat4Live final : public Aedat4Dataset {
       if (!packet.stream || size > kMostLiveBytes)
         throw InputError::format(
             "tcp://{}: a packet of stream {} with {} bytes is invalid: the stream is damaged; start again",
-            stream.connection.name(), packet.number, packet.bytes);
+            stream.connection->name(), packet.number, packet.bytes);
       if (received.size() - body < size) break;
       const std::size_t place = stream.first + *packet.stream;
       if (reads(place))
         take_packet(place, stream.header.compression, received.subspan(body, size),
-                    fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection.name()));
+                    fmt::format("{} bytes into tcp://{}", stream.taken + at, stream.connection->name()));
       at = body + size;
     }
     stream.taken += at;
-    stream.connection.drop(at);
+    stream.connection->drop(at);
     return at > 0;
   }
 
@@ -225,8 +221,8 @@ Recording open_aedat4_tcp(const std::string& address, const Rig* rig, const Reco
   std::vector<LiveStream> streams;
   std::size_t first = 0;
   for (const std::string& port : ports) {
-    TcpConnection connection(host, port);
-    Aedat4Header header = wait_for_header(connection);
+    auto connection = std::make_unique<TcpConnection>(host, port);
+    Aedat4Header header = wait_for_header(*connection);
     const std::size_t count = header.streams.size();
     streams.push_back({std::move(connection), std::move(header), first});
     first += count;

@@ -193,7 +193,6 @@ class Aedat4Writer final : public RecordingWriter {
  public:
   explicit Aedat4Writer(const WriterSetup& setup)
       : setup_(setup),
-        name_(setup.path.string()),
         encoder_(Aedat4Encoder::Compression::Lz4, setup.event_sensor(), pose_frame(setup)),
         file_(setup.path),
         events_(setup.cameras(Modality::Events)) {
@@ -208,7 +207,8 @@ class Aedat4Writer final : public RecordingWriter {
     std::vector<Event>& held = events_[camera];
     for (const Event& event : batch.events) {
       if (event.t < Timestamp())
-        throw InputError::format("{}: the format holds no stamps before 0, the recording has them", name_);
+        throw InputError::format("{}: the format holds no stamps before 0, the recording has them",
+                                 setup_.path.string());
       if (held.size() >= kMostEvents || (!held.empty() && event.t - held.front().t > kLongestPacket))
         flush_events(camera);
       held.push_back(event);
@@ -254,7 +254,6 @@ class Aedat4Writer final : public RecordingWriter {
   }
 
   WriterSetup setup_;
-  std::string name_;
   Aedat4Encoder encoder_;
   OutputFile file_;
   std::vector<std::vector<Event>> events_;  ///< not yet written, for each camera

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/io/hdf5/h5_cameras.hpp"
+#include "edged/io/hdf5/side_files.hpp"
 
 #include <spdlog/spdlog.h>
 

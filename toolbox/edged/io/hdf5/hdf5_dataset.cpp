@@ -14,7 +14,6 @@
 #include "edged/core/check.hpp"
 #include "edged/io/core/camera_names.hpp"
 #include "edged/io/core/streamed_dataset.hpp"
-#include "edged/io/hdf5/h5_cameras.hpp"
 #include "edged/io/hdf5/layouts.hpp"
 #include "edged/io/hdf5/side_files.hpp"
 #include "edged/io/parse/text_parsing.hpp"

@@ -319,9 +319,8 @@ TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout) {
   std::string stem = events_file.path().stem().string();
   if (stem.ends_with("_data")) stem.resize(stem.size() - 5);
   for (const std::string_view ending : layout.truth_files) {
-    const fs::path file = fs::absolute(events_file.path()).parent_path() / stem.append(ending);
+    const fs::path file = fs::absolute(events_file.path()).parent_path() / (stem + std::string(ending));
     if (!ending.empty() && is_file(file)) return reader(file, "events");
-    stem.resize(stem.size() - ending.size());
   }
   return {};
 }

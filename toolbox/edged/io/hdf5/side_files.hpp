@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// The files of data sets beside the event file: images, IMU samples, ground truth.
+// The files of data sets beside the event file, images, IMU samples, ground truth; and the cameras of a data set: in
+// one file, or in a file of its own for each.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "edged/dataset.hpp"
@@ -15,6 +17,7 @@
 #include "edged/io/parse/image_codec.hpp"
 #include "edged/io/parse/repairs.hpp"
 #include "edged/io/parse/stamped_lines.hpp"
+#include "edged/io/recording.hpp"
 
 namespace edged {
 
@@ -41,5 +44,25 @@ std::optional<std::filesystem::path> find_right_events(const std::filesystem::pa
 
 /// Ground truth in HDF5: in the file of the events, or in another file of its folder (MVSEC, M3ED).
 TruthSource find_h5_truth(const H5File& events_file, const Hdf5Layout& layout);
+
+/// Images of a file with their stamps.
+struct H5Images {
+  H5Array pixels;
+  H5Stamps stamps;
+};
+
+/// The cameras of a recording, those that are read.
+struct H5Cameras {
+  std::vector<RecordedCamera> recorded;  ///< as StreamedDataset needs them
+  std::vector<RecordedCamera> known;     ///< also those that are not read
+  std::vector<H5Events> events;
+  std::vector<std::variant<H5Images, StampedLines<FrameEntry>::Spec>> frames;
+  std::vector<std::filesystem::path> cut;  ///< files that end too early
+};
+
+/// The cameras of the file and of the files beside it. Options used: geometry, cameras, all_cameras. Throws InputError
+/// for an events file beside it that holds no events.
+H5Cameras find_h5_cameras(const H5File& file, const Hdf5Layout& layout, const SideFiles& side, const Rig* rig,
+                          const RecordingOptions& options);
 
 }  // namespace edged

@@ -16,8 +16,7 @@ namespace {
 
 class RosWriter final : public RecordingWriter {
  public:
-  RosWriter(const WriterSetup& setup, std::unique_ptr<MessageSink> sink)
-      : setup_(setup), name_(setup.path.string()), sink_(std::move(sink)) {
+  RosWriter(const WriterSetup& setup, std::unique_ptr<MessageSink> sink) : setup_(setup), sink_(std::move(sink)) {
     for (std::size_t i = 0; setup.info.has_events && i < setup.cameras(Modality::Events); ++i)
       sensors_.push_back(setup.event_sensor(i));
   }
@@ -62,10 +61,10 @@ class RosWriter final : public RecordingWriter {
       throw InputError::format(
           "{}: ROS messages hold no stamp before zero, as {} s: add --from {:.3f}, which leaves out "
           "what is earlier",
-          name_, format_seconds(t), 0.001 - to_seconds(t));
+          setup_.path.string(), format_seconds(t), 0.001 - to_seconds(t));
     if (t > latest_stamp(sink_->wire()))
-      throw InputError::format("{}: ROS messages cannot hold the stamp {} s; shift the recording's clock", name_,
-                               format_seconds(t));
+      throw InputError::format("{}: ROS messages cannot hold the stamp {} s; shift the recording's clock",
+                               setup_.path.string(), format_seconds(t));
   }
 
   void send(std::string_view topic, std::string_view type, Timestamp t, std::string_view message) {
@@ -107,7 +106,6 @@ class RosWriter final : public RecordingWriter {
   }
 
   WriterSetup setup_;
-  std::string name_;
   std::vector<cv::Size> sensors_;
   std::unique_ptr<MessageSink> sink_;
   std::map<std::string, std::size_t, std::less<>> topics_;

@@ -54,11 +54,16 @@ class LazyFile {
   fmt::memory_buffer text_;
 };
 
+/// The place in a rig, named as it is read, of the camera that readers take for that of events.txt.
+std::size_t event_camera_place(const std::vector<RigCamera>& named) {
+  auto events = std::ranges::find(named, usual_camera_name(Modality::Events, 0), &RigCamera::name);
+  if (events == named.end()) events = std::ranges::find(named, Modality::Events, &RigCamera::modality);
+  return events == named.end() ? 0 : static_cast<std::size_t>(events - named.begin());
+}
+
 void write_calibration(const WriterSetup& setup, const fs::path& folder) {
   const Calibration named = setup.calibration_when_read();
-  const auto written = std::ranges::find(named.rig.cameras, usual_camera_name(Modality::Events, 0), &RigCamera::name);
-  const RigCamera* events = written != named.rig.cameras.end() ? &*written : named.rig.find(Modality::Events);
-  const CameraModel& m = (events ? *events : named.rig.cameras.front()).model;
+  const CameraModel& m = named.rig.cameras[event_camera_place(named.rig.cameras)].model;
   if (m.distortion() == DistortionModel::None || m.distortion() == DistortionModel::RadTan) {
     const auto& k = m.coefficients();
     LazyFile file(folder / "calib.txt");
@@ -92,14 +97,8 @@ Trajectory camera_ground_truth(const GroundTruth& truth, const WriterSetup& setu
           truth.frame == "body" ? "the body" : "the frame camera");
     return truth.trajectory;
   }
-  const Rig& rig = calibration->rig;
-  // Readers take it as that of the first event camera that is written.
-  const std::vector<RigCamera> renamed = setup.calibration_when_read().rig.cameras;
-  const auto written = std::ranges::find(renamed, usual_camera_name(Modality::Events, 0), &RigCamera::name);
-  const RigCamera* events = rig.find(Modality::Events);
-  const RigCamera& to = written != renamed.end() ? rig.cameras[static_cast<std::size_t>(written - renamed.begin())]
-                        : events                 ? *events
-                                                 : rig.cameras.front();
+  const std::size_t place = event_camera_place(setup.calibration_when_read().rig.cameras);
+  const RigCamera& to = calibration->rig.cameras[place];
   if (truth.frame == to.name) return truth.trajectory;
   const RigCamera body;  // identity and no offset
   const RigCamera& from = truth.frame == "body" ? body : camera_of_frame(setup, truth.frame);
