@@ -49,7 +49,7 @@ class StampJumpFilter {
   /// True if an item of this stamp passes unchanged: then it counts as accepted, and needs no push().
   bool passes(Timestamp t) {
     if (!near(t)) return false;
-    newest_ = std::max(*newest_, t);
+    if (t > *newest_) newest_ = t;
     return true;
   }
 
