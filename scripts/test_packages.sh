@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 Edged USLAM developers
 # SPDX-License-Identifier: Apache-2.0
-# Builds the Debian packages and tries them in a Debian 12 with nothing else in it: the program after its own
-# installation, then the library for a program of a user, then the module of Python. As root, or where a user may make namespaces (mmdebstrap picks).
+# Builds the wheel and the Debian packages and tries them in a Debian 12 with nothing else in it: the wheel, the program
+# after its own installation, the library for a program of a user, the module of Python. As root, or where a user may make namespaces (mmdebstrap picks).
 # Needs the network and 4 GB under $TMPDIR, which are gone afterwards.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,6 +15,15 @@ inside() {
   export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
   install_them() { apt-get install -qq -y --no-install-recommends "$@" >apt.log 2>&1 || { tail -20 apt.log; return 1; }; }
   cd /tmp/try
+
+  step="wheel: follows a flight, with nothing of the system but Python and numpy"; echo "== $step"
+  install_them python3-venv python3-numpy
+  python3 -m venv --system-site-packages wheel
+  wheel/bin/pip install -q --no-index --no-deps ./edged-*.whl
+  wheel/bin/python -c '
+import edged
+assert list(edged.run(edged.simulate("room", 1, end_s=5)))[-1].status == edged.Status.GOOD'
+  wheel/bin/edged run sim:room:1 --to 3 --quiet --out run_wheel >wheel.txt
 
   step="edged: is installed with what it depends on"; echo "== $step"
   install_them ./edged_*.deb man-db
@@ -60,7 +69,7 @@ print(steps[-1])'
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-scripts/setup.sh dpkg-dev file lintian mmdebstrap
+scripts/setup.sh binutils dpkg-dev file lintian mmdebstrap patchelf python3-pip
 cmake --preset package >/dev/null
 cmake --build --preset package
 rm -f build/package/*.deb
@@ -72,6 +81,8 @@ lintian --allow-root --fail-on error,warning --suppress-tags malformed-contact,s
 mkdir "$work/try"
 { declare -f inside && echo inside; } >"$work/try/inside.sh"
 cp -r build/package/*.deb tests/consumer "$work/try"
+/usr/bin/python3 -m pip --disable-pip-version-check wheel -q --no-deps --no-build-isolation \
+  --config-settings=build-dir=build/package --config-settings=libraries=inside -w "$work/try" .
 mmdebstrap --quiet --variant=apt --customize-hook="copy-in '$work/try' /tmp" \
   --customize-hook='chroot "$1" bash /tmp/try/inside.sh' bookworm /dev/null
 echo "test_packages: all is well"
