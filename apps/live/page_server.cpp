@@ -31,13 +31,16 @@ constexpr auto kTimeToAsk = std::chrono::seconds(5), kTimeToAnswer = std::chrono
 /// That of httplib ends the program where a thread cannot be started.
 class Threads : public httplib::TaskQueue {
  public:
+  using Accepted = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));  // nothing, bool from httplib 0.17 on
+
   Threads() {
     while (threads_.size() < kThreads) threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
   }
-  void enqueue(std::function<void()> job) override {
+  Accepted enqueue(std::function<void()> job) override {
     const std::lock_guard lock(mutex_);
     jobs_.push_back(std::move(job));
     more_.notify_one();
+    return static_cast<Accepted>(true);
   }
   void shutdown() override { threads_.clear(); }
 
@@ -149,15 +152,22 @@ bool PageServer::refuses(const httplib::Request& request, httplib::Response& res
 
 /// One request a connection: an idle one would occupy a thread, and browsers open some in advance.
 bool PageServer::process_and_close_socket(socket_t socket) {
-  const bool answered = httplib::detail::process_client_socket(
-      socket, kLongestWait_s, 0, kLongestWait_s, 0, [this](httplib::Stream& stream) {
-        BoundedStream bounded(stream, closing_);
-        bool ignored = false;
-        return process_request(bounded, true, ignored, [&bounded](const httplib::Request& request) {
-          const bool viewer = request.path == "/events";
-          bounded.until = viewer ? ServerClock::time_point::max() : ServerClock::now() + kTimeToAnswer;
-        });
-      });
+  const auto answer = [this](auto& bounded) {
+    bool ignored = false;
+    const std::function<void(httplib::Request&)> set_up = [&bounded](const httplib::Request& request) {
+      const bool viewer = request.path == "/events";
+      bounded.until = viewer ? ServerClock::time_point::max() : ServerClock::now() + kTimeToAnswer;
+    };
+    if constexpr (requires { process_request(bounded, true, ignored, set_up); })
+      return process_request(bounded, true, ignored, set_up);
+    else  // from httplib 0.18 on with both addresses, which the handlers do not use
+      return process_request(bounded, {}, 0, {}, 0, true, ignored, set_up);
+  };
+  const bool answered = httplib::detail::process_client_socket(socket, kLongestWait_s, 0, kLongestWait_s, 0,
+                                                               [this, &answer](httplib::Stream& stream) {
+                                                                 BoundedStream bounded(stream, closing_);
+                                                                 return answer(bounded);
+                                                               });
   ::shutdown(socket, SHUT_RDWR);
   ::close(socket);
   return answered;
