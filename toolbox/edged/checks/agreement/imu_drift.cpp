@@ -16,10 +16,11 @@ namespace edged {
 namespace {
 
 constexpr Duration kMinute = std::chrono::seconds(60), kFollowed = std::chrono::seconds(20);
-constexpr double kLeastSigma_s = 1e-3;       // of the offset: what remains is the online calibration's
-constexpr double kCrystals = 5e-5;           // sigma of the drift at first
-constexpr double kWander_per_sqrt_s = 3e-7;  // of the drift, by temperature: 2 ppm a minute
-constexpr double kFastest = 2e-4;            // change of the line
+constexpr Duration kGap = std::chrono::seconds(1);  // in the camera's stamps, or one is damaged
+constexpr double kLeastSigma_s = 1e-3;              // of the offset: what remains is the online calibration's
+constexpr double kCrystals = 5e-5;                  // sigma of the drift at first
+constexpr double kWander_per_sqrt_s = 3e-7;         // of the drift, by temperature: 2 ppm a minute
+constexpr double kFastest = 2e-4;                   // change of the line
 
 }  // namespace
 
@@ -38,7 +39,9 @@ void ImuDrift::add(const Measurement& measurement, ClockLine& line) {
   if (!begin_ || *t < *begin_) begin_ = *t;
   if (!updated_s_) updated_s_ = to_seconds(*t);
   if (*t - *begin_ >= kMinute) {
-    end_minute(line);
+    if (*t - *begin_ < kMinute + kGap) end_minute(*t, line);
+    visual_.reset();
+    samples_.clear();
     begin_ = *t;
   } else if (*t - *begin_ >= kMinute - kFollowed) {
     if (!visual_) visual_.emplace(camera_);
@@ -46,16 +49,15 @@ void ImuDrift::add(const Measurement& measurement, ClockLine& line) {
   }
 }
 
-void ImuDrift::end_minute(ClockLine& line) {
-  const std::optional<VisualTurns> visual = std::exchange(visual_, std::nullopt);
-  const std::vector<ImuSample> samples = std::exchange(samples_, {});
-  if (!visual || visual->turns().empty() || samples.empty()) return;
-  const std::vector<Turn>& turns = visual->turns();
-  const auto found = offset_of(turns, samples, camera_, camera_.time_offset);
-  if (!found) return;
-  update(to_seconds(turns.front().begin + (turns.back().end - turns.front().begin) / 2), found->x_s, found->sigma_s);
+/// Without rotation by what is expected, as the line may still catch up.
+void ImuDrift::end_minute(Timestamp now, ClockLine& line) {
+  if (visual_) {
+    const std::vector<Turn>& turns = visual_->turns();
+    if (const auto found = offset_of(turns, samples_, camera_, camera_.time_offset))
+      update(to_seconds(turns.front().begin + (turns.back().end - turns.front().begin) / 2), found->x_s,
+             found->sigma_s);
+  }
   // All that is missing until the end of the next minute.
-  const Timestamp now = turns.back().end;
   const double at_end_s = x_[0] + x_[1] * (to_seconds(now) - *updated_s_);
   const double turn = std::clamp(x_[1] + at_end_s / to_seconds(kMinute), -kFastest, kFastest);
   const Timestamp imu = line.t_imu + duration_from_seconds(to_seconds(now - line.t) / line.per_imu);

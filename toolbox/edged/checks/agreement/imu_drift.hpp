@@ -32,7 +32,7 @@ class ImuDrift {
   void add(const Measurement& measurement, ClockLine& line);
 
  private:
-  void end_minute(ClockLine& line);
+  void end_minute(Timestamp now, ClockLine& line);
   void update(double t_s, double missing_s, double sigma_s);
 
   RigCamera camera_;
