@@ -18,6 +18,9 @@ add_library(edged_options INTERFACE)
 target_compile_options(edged_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
                                                -fno-semantic-interposition -fno-math-errno -fno-trapping-math
                                                -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+  target_compile_options(edged_options INTERFACE -Wno-dangling-reference)  # false where an argument is a temporary
+endif()
 if(EDGED_WERROR)
   target_compile_options(edged_options INTERFACE -Werror)
 endif()

@@ -73,51 +73,51 @@ py::array read_only(py::array array) {
 }
 
 /// Never destroyed: no destructor may run after the interpreter's end.
-const py::dtype* kept(py::dtype dtype) { return new py::dtype(std::move(dtype)); }
+const py::dtype& kept(py::dtype dtype) { return *new py::dtype(std::move(dtype)); }
 
 }  // namespace
 
 template <>
 const py::dtype& dtype_of<Event>() {
   static const py::dtype& dtype =
-      *kept(make_dtype({{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"p", "?", 12}}, sizeof(Event)));
+      kept(make_dtype({{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"p", "?", 12}}, sizeof(Event)));
   return dtype;
 }
 
 template <>
 const py::dtype& dtype_of<ImuSample>() {
-  static const py::dtype& dtype = *kept(make_dtype({{"t", "<i8", place(&ImuSample::t)},
-                                                    {"gyro", "(3,)<f8", place(&ImuSample::gyro_B)},
-                                                    {"accel", "(3,)<f8", place(&ImuSample::accel_B)},
-                                                    {"interpolated", "?", place(&ImuSample::interpolated)}},
-                                                   sizeof(ImuSample)));
+  static const py::dtype& dtype = kept(make_dtype({{"t", "<i8", place(&ImuSample::t)},
+                                                   {"gyro", "(3,)<f8", place(&ImuSample::gyro_B)},
+                                                   {"accel", "(3,)<f8", place(&ImuSample::accel_B)},
+                                                   {"interpolated", "?", place(&ImuSample::interpolated)}},
+                                                  sizeof(ImuSample)));
   return dtype;
 }
 
 template <>
 const py::dtype& dtype_of<Track>() {
-  static const py::dtype& dtype = *kept(make_dtype({{"id", "<u8", place(&Track::id)},
-                                                    {"pixel", "(2,)<f8", place(&Track::pixel)},
-                                                    {"point", "(2,)<f8", place(&Track::point)},
-                                                    {"previous_pixel", "(2,)<f8", place(&Track::previous_pixel)},
-                                                    {"age", "<i4", place(&Track::age)},
-                                                    {"first_seen", "<i8", place(&Track::first_seen)}},
-                                                   sizeof(Track)));
+  static const py::dtype& dtype = kept(make_dtype({{"id", "<u8", place(&Track::id)},
+                                                   {"pixel", "(2,)<f8", place(&Track::pixel)},
+                                                   {"point", "(2,)<f8", place(&Track::point)},
+                                                   {"previous_pixel", "(2,)<f8", place(&Track::previous_pixel)},
+                                                   {"age", "<i4", place(&Track::age)},
+                                                   {"first_seen", "<i8", place(&Track::first_seen)}},
+                                                  sizeof(Track)));
   return dtype;
 }
 
 template <>
 const py::dtype& dtype_of<Landmark>() {
-  static const py::dtype& dtype = *kept(
+  static const py::dtype& dtype = kept(
       make_dtype({{"id", "<u8", place(&Landmark::id)}, {"p_W", "(3,)<f8", place(&Landmark::p_W)}}, sizeof(Landmark)));
   return dtype;
 }
 
 const py::dtype& pose_dtype() {
-  static const py::dtype& dtype = *kept(make_dtype({{"t", "<i8", 0},
-                                                    {"position", "(3,)<f8", offsetof(PoseRow, position)},
-                                                    {"quaternion", "(4,)<f8", offsetof(PoseRow, quaternion)}},
-                                                   sizeof(PoseRow)));
+  static const py::dtype& dtype = kept(make_dtype({{"t", "<i8", 0},
+                                                   {"position", "(3,)<f8", offsetof(PoseRow, position)},
+                                                   {"quaternion", "(4,)<f8", offsetof(PoseRow, quaternion)}},
+                                                  sizeof(PoseRow)));
   return dtype;
 }
 
@@ -133,7 +133,7 @@ py::array view(const cv::Mat& image, const py::handle& owner) {
 
 void check_events(const py::array& events) {
   static const py::dtype& with_numbers =
-      *kept(make_dtype({{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"p", "u1", 12}}, sizeof(Event)));
+      kept(make_dtype({{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"p", "u1", 12}}, sizeof(Event)));
   if (!events.dtype().equal(with_numbers))
     check_dtype(events, dtype_of<Event>(), "events", "must be edged.EVENT: edged.make_events or .astype(edged.EVENT)");
   check_rows(events, "events");
