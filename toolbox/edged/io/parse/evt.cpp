@@ -271,6 +271,17 @@ void EvtDecoder::each_word(std::span<const std::uint8_t> bytes, const Step& step
   sink.add(state, state.high, bits(word, 32, 14), bits(word, 46, 14), bits(word, 60, 4) != 0);
 }
 
+EventGroup leading_group(std::span<const Event> events) {
+  const Event& a = events.front();
+  EventGroup group{1, 1};
+  for (; group.count < events.size(); ++group.count) {
+    const Event &b = events[group.count], &before = events[group.count - 1];
+    if (b.t != a.t || b.y != a.y || b.positive != a.positive || b.x <= before.x || b.x >= a.x + 32) break;
+    group.mask |= 1U << (b.x - a.x);
+  }
+  return group;
+}
+
 EvtEncoder::EvtEncoder(EvtFormat format) : format_(format) {
   EDGED_CHECK(format == EvtFormat::Evt3 || format == EvtFormat::Dat, "no encoder of this format");
 }
@@ -281,8 +292,7 @@ const std::string& EvtEncoder::encode(std::span<const Event> events) {
   return bytes_;
 }
 
-/// Writes the leading events with the same stamp, row and polarity within 32 columns, which become one group of EVT 3.
-/// Returns their number.
+/// Writes the leading events: a group of EVT 3, or one of DAT. Returns their number.
 std::size_t EvtEncoder::write_row(std::span<const Event> events) {
   const Event& a = events.front();
   const auto t_us = static_cast<std::uint64_t>(to_ns(a.t) / 1000);
@@ -291,15 +301,9 @@ std::size_t EvtEncoder::write_row(std::span<const Event> events) {
     append_number(bytes_, static_cast<std::uint32_t>(a.x | a.y << 14 | a.positive << 28));
     return 1;
   }
-  std::uint32_t mask = 1;
-  std::size_t count = 1;
-  for (; count < events.size(); ++count) {
-    const Event &b = events[count], &before = events[count - 1];
-    if (b.t != a.t || b.y != a.y || b.positive != a.positive || b.x <= before.x || b.x >= a.x + 32) break;
-    mask |= 1U << (b.x - a.x);
-  }
-  write_evt3(a, t_us, mask);
-  return count;
+  const EventGroup group = leading_group(events);
+  write_evt3(a, t_us, group.mask);
+  return group.count;
 }
 
 void EvtEncoder::write_evt3(const Event& e, std::uint64_t t_us, std::uint32_t mask) {

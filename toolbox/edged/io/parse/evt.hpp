@@ -90,6 +90,13 @@ class EvtDecoder {
   std::size_t cut_bytes_ = 0;
 };
 
+/// Leading events with the same stamp, row and polarity within 32 columns: a word of them has a bit for each column.
+struct EventGroup {
+  std::size_t count;
+  std::uint32_t mask;  ///< bit i: column of the first event + i
+};
+EventGroup leading_group(std::span<const Event> events);
+
 /// Encodes events in time order as EVT 3 or DAT for EvtDecoder. Stamps are rounded down to microseconds. Bits of the
 /// first stamp beyond the counter (EVT 3: 24 bits, DAT: 32) are lost, and later stamps continue from there. Columns and
 /// rows have 11 bits (DAT: 14).

@@ -50,7 +50,7 @@ class AnyEvtEncoder {
   }
 
  private:
-  /// Leading events with the same stamp, row and polarity within 32 columns become one group.
+  /// Writes the leading events: a group, or one of EVT 2. Returns their number.
   std::size_t write_row(std::span<const Event> events) {
     const Event& a = events.front();
     write_high(static_cast<std::uint64_t>(to_ns(a.t) / 1000) >> 6U);
@@ -58,13 +58,7 @@ class AnyEvtEncoder {
       append_number(bytes_, (a.positive ? 1U << 28U : 0U) | low_bits(a) | unsigned{a.x} << 11U | a.y);
       return 1;
     }
-    std::uint32_t mask = 1;
-    std::size_t count = 1;
-    for (; count < events.size(); ++count) {
-      const Event &b = events[count], &before = events[count - 1];
-      if (b.t != a.t || b.y != a.y || b.positive != a.positive || b.x <= before.x || b.x >= a.x + 32) break;
-      mask |= 1U << (b.x - a.x);
-    }
+    const auto [count, mask] = leading_group(events);
     const std::uint32_t place = low_bits(a) | unsigned{a.x} << 11U | a.y;
     if (format_ == EvtFormat::Evt4) {
       append_number(bytes_, ((mask == 1 ? 0xAU : 0xCU) + (a.positive ? 1U : 0U)) << 28U | place);
