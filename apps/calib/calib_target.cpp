@@ -126,9 +126,8 @@ std::vector<ImuSample> with_found_clock(std::vector<ImuSample> imu, double rate,
   }
   if (!found->determined()) throw undetermined_offset(result.recording, result.cameras.back().views.name, *found);
   result.imu_clock = {{found->offset, rate * found->rate}, found};
-  const ImuClock left{found->offset, found->rate};
-  const Timestamp first = imu.front().t;
-  for (ImuSample& sample : imu) sample.t = left.corrected(sample.t, first);
+  const ClockLine left = ImuClock{found->offset, found->rate}.from(imu.front().t);
+  for (ImuSample& sample : imu) sample.t = left.at(sample.t);
   return imu;
 }
 

@@ -24,13 +24,13 @@ std::optional<ImuOffset> search(const Recording& recording, const RigCamera& cam
   ImuOffsetSearch search(camera, recording.calibration->has_extrinsics);
   if (camera.modality == Modality::Events) recording.dataset->leave_out(Modality::Frames);
   if (camera.modality == Modality::Frames) recording.dataset->leave_out(Modality::Events);
-  std::optional<Timestamp> first;
+  std::optional<ClockLine> line;
   const bool whole = read(*recording.dataset, [&](const Measurement& measurement) {
     const auto* sample = std::get_if<ImuSample>(&measurement);
     if (!sample) return search.add(measurement);
-    if (!first) first = sample->t;
+    if (!line) line = ImuClock{Duration(0), rate}.from(sample->t);
     ImuSample corrected = *sample;
-    corrected.t = ImuClock{Duration(0), rate}.corrected(sample->t, *first);
+    corrected.t = line->at(sample->t);
     search.add(corrected);
   });
   return whole ? std::optional(search.result()) : std::nullopt;

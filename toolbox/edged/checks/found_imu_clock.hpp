@@ -63,7 +63,7 @@ class LiveImuClock {
 
  private:
   bool begins_again(Timestamp stamp);
-  ClockLine line_by(Duration offset) const { return {*first_, *first_ + offset, 1.0 / rate_}; }
+  ClockLine line_by(Duration offset) const { return ImuClock{offset, rate_}.from(*first_); }
   void begin();
   void search(const Measurement& measurement);
 

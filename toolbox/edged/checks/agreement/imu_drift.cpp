@@ -52,16 +52,14 @@ void ImuDrift::add(const Measurement& measurement, ClockLine& line) {
 /// Without rotation by what is expected, as the line may still catch up.
 void ImuDrift::end_minute(Timestamp now, ClockLine& line) {
   if (visual_) {
-    const std::vector<Turn>& turns = visual_->turns();
-    if (const auto found = offset_of(turns, samples_, camera_, camera_.time_offset))
-      update(to_seconds(turns.front().begin + (turns.back().end - turns.front().begin) / 2), found->x_s,
-             found->sigma_s);
+    if (const auto found = offset_of(visual_->turns(), samples_, camera_, camera_.time_offset))
+      update(to_seconds(samples_.front().t) + found->t_s, found->x_s, found->sigma_s);
   }
   // All that is missing until the end of the next minute.
   const double at_end_s = x_[0] + x_[1] * (to_seconds(now) - *updated_s_);
   const double turn = std::clamp(x_[1] + at_end_s / to_seconds(kMinute), -kFastest, kFastest);
-  const Timestamp imu = line.t_imu + duration_from_seconds(to_seconds(now - line.t) / line.per_imu);
-  line = {imu, now, line.per_imu + turn};
+  const Timestamp imu = line.t_imu + duration_from_seconds(to_seconds(now - line.t) * line.rate);
+  line = {imu, now, 1.0 / (1.0 / line.rate + turn)};
   x_[1] -= turn;
   x_[0] += turn * (to_seconds(now) - *updated_s_);  // as if the line had turned then
   turned_ += turn;

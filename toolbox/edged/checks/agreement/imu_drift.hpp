@@ -8,18 +8,11 @@
 #include <vector>
 
 #include "edged/checks/agreement/visual_turns.hpp"
+#include "edged/io/core/replaced_streams.hpp"
 #include "edged/measurement.hpp"
 #include "edged/rig.hpp"
 
 namespace edged {
-
-/// A line from the stamps of an IMU to the clock of the cameras.
-struct ClockLine {
-  Timestamp t_imu, t;    ///< a point of it
-  double per_imu = 1.0;  ///< seconds of the cameras per second of the IMU
-
-  Timestamp at(Timestamp imu) const { return t + duration_from_seconds(per_imu * to_seconds(imu - t_imu)); }
-};
 
 /// Follows the drift: every minute the rotations of 20 s tell what is wrong with the corrected stamps, and a filter of
 /// offset and drift turns the line by so little that the stamps never jump. Two crystals differ by up to 50 ppm.
@@ -39,7 +32,7 @@ class ImuDrift {
   std::optional<Timestamp> begin_;  ///< of the minute, by the camera
   std::vector<ImuSample> samples_;  ///< since the rotations are followed
   std::optional<VisualTurns> visual_;
-  std::optional<double> updated_s_;  ///< stamp of the camera
+  std::optional<double> updated_s_;  ///< when x_ is
   Eigen::Vector2d x_{0.0, 0.0};      ///< what is missing at corrected stamps [s], and its growth [s/s]
   Eigen::Matrix2d P_;                ///< covariance of x_
   double turned_ = 0.0;              ///< of the line so far

@@ -52,9 +52,9 @@ class WithImuClock final : public WithSamples {
       if (!measurement) return std::nullopt;
       const auto* sample = std::get_if<ImuSample>(&*measurement);
       if (sample == nullptr) continue;
-      if (!first_) first_ = sample->t;
+      if (!line_) line_ = clock_.from(sample->t);
       sample_ = *sample;
-      sample_->t = clock_.corrected(sample->t, *first_);
+      sample_->t = line_->at(sample->t);
     }
     return sample_->t;
   }
@@ -64,7 +64,7 @@ class WithImuClock final : public WithSamples {
   std::unique_ptr<Dataset> imu_;
   ImuClock clock_;
   DatasetInfo info_;
-  std::optional<Timestamp> first_;
+  std::optional<ClockLine> line_;  ///< from the first sample on
   std::optional<ImuSample> sample_;
 };
 

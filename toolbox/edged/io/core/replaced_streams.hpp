@@ -19,15 +19,21 @@ namespace edged {
 /// InputError as read_trajectory().
 std::unique_ptr<Dataset> with_truth_file(std::unique_ptr<Dataset> recording, const SourcePath& file);
 
-/// What an IMU's clock is relative to that of the other sensors: t = t_first + offset + (t_imu - t_first) / rate.
+/// A line from the stamps of an IMU to the clock of the other sensors.
+struct ClockLine {
+  Timestamp t_imu, t;  ///< a point of it
+  double rate = 1.0;   ///< seconds of the IMU per second of the others
+
+  Timestamp at(Timestamp imu) const { return t + duration_from_seconds(to_seconds(imu - t_imu) / rate); }
+};
+
+/// What an IMU's clock is relative to that of the other sensors.
 struct ImuClock {
   Duration offset{0};
   double rate = 1.0;  ///< seconds of the IMU per second of the others
 
-  /// t_first: the first stamp of the IMU.
-  Timestamp corrected(Timestamp t_imu, Timestamp t_first) const {
-    return t_first + offset + duration_from_seconds(to_seconds(t_imu - t_first) / rate);
-  }
+  /// t_first: the first stamp of the IMU, to which `offset` is added.
+  ClockLine from(Timestamp t_first) const { return {t_first, t_first + offset, rate}; }
 };
 
 /// The recording with the stamps of its IMU corrected to the clock of the other sensors. The recording is in the order
