@@ -31,7 +31,7 @@ constexpr auto kTimeToAsk = std::chrono::seconds(5), kTimeToAnswer = std::chrono
 /// That of httplib ends the program where a thread cannot be started.
 class Threads : public httplib::TaskQueue {
  public:
-  using Accepted = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));  // nothing, bool from httplib 0.17 on
+  using Accepted = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));  // nothing in httplib 0.11, bool in 0.18
 
   Threads() {
     while (threads_.size() < kThreads) threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
@@ -160,7 +160,7 @@ bool PageServer::process_and_close_socket(socket_t socket) {
     };
     if constexpr (requires { process_request(bounded, true, ignored, set_up); })
       return process_request(bounded, true, ignored, set_up);
-    else  // from httplib 0.18 on with both addresses, which the handlers do not use
+    else  // httplib 0.18 also takes both addresses, which the handlers do not use
       return process_request(bounded, {}, 0, {}, 0, true, ignored, set_up);
   };
   const bool answered = httplib::detail::process_client_socket(socket, kLongestWait_s, 0, kLongestWait_s, 0,
