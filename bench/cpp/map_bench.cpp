@@ -98,7 +98,7 @@ void BM_TakeUpWhatWasFound(benchmark::State& state) {
   filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
   for (int k = 0; k < state.range(0); ++k) {
     const Timestamp t = timestamp_from_seconds(0.3 * k);
-    filter.predict(SE3(), SE3(), t);
+    filter.predict(SE3(), SE3(), t, kMapTuning.final_drift);
     filter.add_keyframe(SE3(), SE3(), t);
   }
   std::vector<MapObservation> observations;
@@ -129,7 +129,7 @@ void BM_ComeBack(benchmark::State& state) {
   std::vector<std::uint32_t> begin, end;
   for (std::uint32_t k = 0; k < state.range(0); ++k) {
     const Timestamp t = timestamp_from_seconds(0.3 * k);
-    filter.predict(SE3(), SE3(), t);
+    filter.predict(SE3(), SE3(), t, kMapTuning.final_drift);
     filter.add_keyframe(SE3(), SE3(), t);
     (k < kKeyframesInView ? begin : end).push_back(k);
   }
@@ -137,9 +137,9 @@ void BM_ComeBack(benchmark::State& state) {
   double t = 0.3 * static_cast<double>(state.range(0));
   for (auto _ : state) {
     filter.activate(begin);
-    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
+    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3), kMapTuning.final_drift);
     filter.activate(end);
-    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3));
+    filter.predict(SE3(), SE3(), timestamp_from_seconds(t += 0.3), kMapTuning.final_drift);
   }
 }
 BENCHMARK(BM_ComeBack)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
@@ -153,7 +153,7 @@ TrajectorySmoother record_of(double duration_s, std::size_t most_keyframes) {
     return SE3(so3::exp({0.1 * std::sin(0.7 * t), 0.2 * std::sin(t), 0.0}),
                {std::sin(0.3 * t), std::sin(0.4 * t), 0.0});
   };
-  TrajectorySmoother record{MapFilterConfig{}};
+  TrajectorySmoother record;
   std::vector<double> made_at;
   record.restart({Timestamp{}, true_pose(0.0)}, 0.01, 0.01);
   for (int i = 1; kPose_s * i < duration_s; ++i) {

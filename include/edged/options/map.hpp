@@ -22,9 +22,6 @@ struct KeyframeMapConfig {
 
 /// The filter over the poses of body and keyframes.
 struct MapFilterConfig {
-  double drift_m = 0.002;  ///< drift of the odometry in 1 s, each axis
-  double drift_yaw_deg = 0.2;
-  double drift_tilt_deg = 0.4;
   double pixel_sigma = 2.0;  ///< sigma of a map match [px]; its errors repeat from image to image
   int min_observations = 8;
   double min_found_share = 0.4;

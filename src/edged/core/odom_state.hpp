@@ -20,4 +20,11 @@ struct OdomState {
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
+/// How well the odometry knows its newest state: one sigma of each.
+struct OdomUncertainty {
+  double tilt = 0.0;       ///< in the worst direction [rad]
+  double velocity = 0.0;   ///< of each axis [m/s]
+  double gyro_bias = 0.0;  ///< of each axis [rad/s]
+};
+
 }  // namespace edged

@@ -22,25 +22,19 @@ class Ring {
     return {so3::exp({0.0, 0.0, a}), {9.5 * std::sin(a), 9.5 * (1.0 - std::cos(a)), 0.0}};
   }
 
-  Ring() : filter_(config_of_ring(), false, 10) {
+  Ring() : filter_(MapFilterConfig(), false, 10) {
     filter_.restart(SE3(), truth(0), Timestamp{}, 0.0, 0.0);
     const SE3 drift(so3::exp({0.0, 0.0, 0.001}), {0.001, 0.0, 0.0});
     for (int k = 0; k < kSteps; ++k) {
       if (k > 0) T_O_B_ = T_O_B_ * truth(k - 1).inverse() * truth(k) * drift;
-      filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(k));
+      filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(k), kDrift);
       filter_.add_keyframe(SE3(), T_O_B_, timestamp_from_seconds(k));
     }
     T_O_B_ = T_O_B_ * truth(kSteps - 1).inverse() * truth(kSteps);
-    filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(kSteps));
+    filter_.predict(SE3(), T_O_B_, timestamp_from_seconds(kSteps), kDrift);
     filter_.activate(std::array{0U});
   }
-  static MapFilterConfig config_of_ring() {
-    MapFilterConfig config;
-    config.drift_m = 0.005;
-    config.drift_tilt_deg = 0.06;
-    config.drift_yaw_deg = 0.3;
-    return config;
-  }
+  static constexpr Drift kDrift = {0.005, 0.3 * kDegree, 0.06 * kDegree};
   double worst_error() const {
     double worst = 0.0;
     for (int k = 0; k < kSteps; ++k)

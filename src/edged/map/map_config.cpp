@@ -21,9 +21,6 @@ void KeyframeMapConfig::visit(ConfigFields& fields) {
 }
 
 void MapFilterConfig::visit(ConfigFields& fields) {
-  fields.add("drift_m", drift_m, {"m", 0, 10, "Drift of the odometry's position in 1 s, per axis."});
-  fields.add("drift_yaw_deg", drift_yaw_deg, {"deg", 0, 90, "Drift of the odometry's yaw in 1 s."});
-  fields.add("drift_tilt_deg", drift_tilt_deg, {"deg", 0, 90, "Drift of the odometry's roll and pitch in 1 s."});
   fields.add("pixel_sigma", pixel_sigma, {"px", 0.01, 100, "Standard deviation of a matched point."});
   fields.add("min_observations", min_observations, {"", 3, 1000, "A match with fewer points is rejected."});
   fields.add("min_found_share", min_found_share,

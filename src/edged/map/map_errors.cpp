@@ -37,11 +37,15 @@ Eigen::Matrix3d rotation_covariance(const SE3& T_M_B, double yaw_variance, doubl
   return yaw_variance * along_up + tilt_variance * (Eigen::Matrix3d::Identity() - along_up);
 }
 
-Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt) {
-  const double yaw = config.drift_yaw_deg * kDegree, tilt = config.drift_tilt_deg * kDegree;
+Drift drift_of(const OdomUncertainty& odometry) {
+  const double turn = std::sqrt(kMapTuning.gyro_bias_time_s) * odometry.gyro_bias;
+  return {std::sqrt(kMapTuning.velocity_time_s) * odometry.velocity, turn, turn};
+}
+
+Matrix6d drift_covariance(const Drift& drift, const SE3& T_M_B, double dt) {
   Matrix6d Q = Matrix6d::Zero();
-  Q.diagonal().head<3>().setConstant(config.drift_m * config.drift_m * dt);
-  Q.bottomRightCorner<3, 3>() = dt * rotation_covariance(T_M_B, yaw * yaw, tilt * tilt);
+  Q.diagonal().head<3>().setConstant(drift.position * drift.position * dt);
+  Q.bottomRightCorner<3, 3>() = dt * rotation_covariance(T_M_B, drift.yaw * drift.yaw, drift.tilt * drift.tilt);
   return Q;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "edged/core/angles.hpp"
+#include "edged/core/odom_state.hpp"
 #include "edged/map/tuning.hpp"
 #include "edged/options/map.hpp"
 #include "edged/se3.hpp"
@@ -57,8 +58,10 @@ Matrix6d transport(const SE3& T_M_A, const SE3& T_A_B);
 /// Covariance of a rotation error in B with these variances about the vertical and about horizontal axes [rad^2].
 Eigen::Matrix3d rotation_covariance(const SE3& T_M_B, double yaw_variance, double tilt_variance);
 
-/// Covariance of the odometry's drift after dt [s].
-Matrix6d drift_covariance(const MapFilterConfig& config, const SE3& T_M_B, double dt);
+/// An odometry drifts by the errors of its velocity and of its gyro bias, one after the other (decision 027).
+Drift drift_of(const OdomUncertainty& odometry);
+/// Covariance of the drift after dt [s].
+Matrix6d drift_covariance(const Drift& drift, const SE3& T_M_B, double dt);
 
 /// Up in the body frame by the odometry, a unit vector, and the information on its direction [1/rad^2].
 struct GravityObservation {

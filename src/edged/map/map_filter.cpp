@@ -42,7 +42,7 @@ void MapFilter::set_tilt_sigma(double sigma) {
   tilt_sigma_ = sigma;
 }
 
-void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift) {
+void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, const Drift& drift) {
   deactivate_beyond_limit();
   const Matrix6d F = transport(T_M_B_, T_O_B_.inverse() * T_O_B);
   const Eigen::Matrix<double, Eigen::Dynamic, 6> moved = P_.leftCols<6>() * F.transpose();
@@ -50,8 +50,9 @@ void MapFilter::predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double 
   P_.topRows<6>() = moved.transpose();
   T_O_B_ = T_O_B;
   T_M_B_ = T_M_O * T_O_B;
+  drift_ = drift;
   P_.topLeftCorner<6, 6>() =
-      F * moved.topRows<6>() + drift * drift * drift_covariance(config_, T_M_B_, std::max(to_seconds(t - t_), 0.0));
+      F * moved.topRows<6>() + drift_covariance(drift, T_M_B_, std::max(to_seconds(t - t_), 0.0));
   t_ = t;
 }
 
@@ -66,7 +67,7 @@ void MapFilter::add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t) {
   activated_.push_back(t_);
   row_.push_back(n);
   grown.bottomRightCorner<6, 6>() = F * P_.topLeftCorner<6, 6>() * F.transpose() +
-                                    drift_covariance(config_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
+                                    drift_covariance(drift_, T_M_K_.back(), std::abs(to_seconds(t_ - t)));
   P_ = std::move(grown);
 }
 

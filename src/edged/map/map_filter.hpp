@@ -35,9 +35,9 @@ class MapFilter {
                double tilt_sigma = 0.0);
   /// The odometry is that uncertain of its tilt [rad]. What it has learned of that since the last call has turned it.
   void set_tilt_sigma(double sigma);
-  /// Prediction to T_O_B. drift: factor on the drift in the options. Before it, the active keyframes beyond
+  /// Prediction to T_O_B, with the drift of the odometry since the last one. Before it, the active keyframes beyond
   /// max_active that were activated longest ago are deactivated.
-  void predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, double drift = 1.0);
+  void predict(const SE3& T_M_O, const SE3& T_O_B, Timestamp t, const Drift& drift);
   /// Adds a keyframe of the odometry, at T_O_K: the last one in keyframes().
   void add_keyframe(const SE3& T_M_O, const SE3& T_O_K, Timestamp t);
   /// Replaces all keyframes by those of another run; covariance: of the active ones, six rows each.
@@ -111,6 +111,7 @@ class MapFilter {
   bool fixed_keyframes_;
   int max_active_;
   double tilt_sigma_ = kMapTuning.tilt_deg * kDegree, updated_tilt_sigma_ = tilt_sigma_;  ///< now, at the last update
+  Drift drift_;                                                                           ///< at the last prediction
   SE3 T_O_B_, T_M_B_;
   Timestamp t_, updated_;
   static constexpr Eigen::Index kInactive = -1;

@@ -107,7 +107,7 @@ TEST(MapMerge, KeepsTheUncertaintyOfInactiveKeyframes) {
   const SavedMap all_active = merged(map, other, kT_A_B);
   MapFilter filter(MapFilterConfig{}, false, 3);
   filter.load(other.T_M_K, other.covariance);
-  filter.predict(SE3(), SE3(), Timestamp());
+  filter.predict(SE3(), SE3(), Timestamp(), {});
   other.covariance = filter.keyframe_covariance();
   other.inactive = filter.inactive();
   ASSERT_EQ(other.inactive.size(), 1U);

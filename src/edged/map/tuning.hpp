@@ -5,7 +5,15 @@
 
 #include <cstddef>
 
+#include "edged/core/angles.hpp"
+
 namespace edged {
+
+/// The random walk of the odometry's pose: sigmas after 1 s.
+struct Drift {
+  double position = 0.0;         ///< of each axis [m]
+  double yaw = 0.0, tilt = 0.0;  ///< [rad]
+};
 
 /// Decisions are those of docs/decisions.
 struct MapTuning {
@@ -43,8 +51,9 @@ struct MapTuning {
   std::size_t confirming = 3;  ///< images or keyframes that agree on a loop, or on the place of another map
 
   // Filter (decisions 027, 048, 050).
-  int active_keyframes = 100;  ///< time and memory grow with the square
-  std::size_t parents = 3;     ///< that a deactivated keyframe depends on: with one, what it shares with others is lost
+  double velocity_time_s = 0.12, gyro_bias_time_s = 4.0;  ///< for which errors of the odometry last: its drift
+  int active_keyframes = 100;                             ///< time and memory grow with the square
+  std::size_t parents = 3;  ///< that a deactivated keyframe depends on: with one, what it shares with others is lost
   std::size_t parent_candidates = 10;  ///< for the next parent, after the first
   double cauchy_sigmas = 2.0;          ///< scale of the robust loss of map matches
   double tilt_deg = 0.3;               ///< sigma of the odometry's roll and pitch, where it is not known
@@ -52,9 +61,9 @@ struct MapTuning {
   double tilt_time_s = 10.0;           ///< after which the error of the tilt is another one
 
   // Final trajectory (decision 028).
-  double final_drift_factor = 2.0;  ///< on the drift of the filter: matches on both sides bound it
-  int final_iterations = 15;        ///< steps of the joint optimization, at most
-  double start_tilt_deg = 0.2;      ///< sigma of the tilt between two starts
+  Drift final_drift = {0.004, 0.4 * kDegree, 0.8 * kDegree};  ///< matches on both sides bound it
+  int final_iterations = 15;                                  ///< steps of the joint optimization, at most
+  double start_tilt_deg = 0.2;                                ///< sigma of the tilt between two starts
   std::size_t joint_images =
       500;  ///< matched images that are optimized with the keyframes: time grows faster than they
 
@@ -64,7 +73,6 @@ struct MapTuning {
   double gap_mps = 2.0, gap_radps = 1.5;    ///< the same of a gap of all sensors
   double max_turn_rad = 0.1;                ///< bound on the rotation error of the odometry at any time; grows with it
   double relocalization_interval_s = 0.09;  ///< between images, after a loss
-  double young_drift_factor = 5.0;          ///< on the drift soon after a start, when the scale is inaccurate
   double max_unmatched_s = 5.0;             ///< with localize_only: in motion without a map match, until it is lost
 
   // Loop closure (decision 049).

@@ -33,16 +33,12 @@ class TrajectorySmoother::Fit {
   /// linear time and memory.
   Fit(const TrajectorySmoother& record, const OdomToMap& odom_to_map, const std::optional<Closed>& closed,
       std::size_t of, const Fit* together = nullptr)
-      : config_(record.config_),
-        odom_to_map_(odom_to_map),
+      : odom_to_map_(odom_to_map),
         closed_(closed),
         of_(of),
         together_(together),
         loaded_fixed_(record.loaded_fixed_),
         keyframes_(record.keyframes_) {
-    config_.drift_m *= kMapTuning.final_drift_factor;
-    config_.drift_yaw_deg *= kMapTuning.final_drift_factor;
-    config_.drift_tilt_deg *= kMapTuning.final_drift_factor;
     for (std::size_t k = 0; k < record.loaded_.size(); ++k) add_loaded(k, record.loaded_);
     for (const Session& session : record.sessions_) add_session(session);
     for (const Session& session : record.sessions_)
@@ -98,7 +94,7 @@ class TrajectorySmoother::Fit {
       if (node != nodes.begin()) {
         const auto& [t_before, before] = *std::prev(node);
         graph_.add_step(number - 1, number, before.T_O_B.inverse() * at.T_O_B,
-                        drift_covariance(config_, T_M_B, to_seconds(t - t_before)));
+                        drift_covariance(kMapTuning.final_drift, T_M_B, to_seconds(t - t_before)));
         graph_.add_gravity(number, observed_gravity(at.T_O_B, to_seconds(t - t_before)));
       } else if (number > 0) {
         graph_.add_step(number - 1, number, graph_.poses()[number - 1].inverse() * T_M_B,
@@ -126,7 +122,6 @@ class TrajectorySmoother::Fit {
     }
   }
 
-  MapFilterConfig config_;
   const OdomToMap& odom_to_map_;
   const std::optional<Closed>& closed_;
   std::size_t of_;

@@ -21,8 +21,6 @@ namespace edged {
 /// starts. Half a megabyte a minute; solve() takes six times that while it works.
 class TrajectorySmoother {
  public:
-  explicit TrajectorySmoother(const MapFilterConfig& config) : config_(config) {}
-
   /// Nothing has started yet.
   bool empty() const { return sessions_.empty(); }
 
@@ -99,7 +97,6 @@ class TrajectorySmoother {
   static std::vector<MapObservation> observations(const View& view);
   static SE3 between(const Trajectory& moved, Timestamp t);
 
-  MapFilterConfig config_;
   std::vector<SE3> loaded_;  ///< T_M_K
   bool loaded_fixed_ = false;
   std::vector<Session> sessions_;

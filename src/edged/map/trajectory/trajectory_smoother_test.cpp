@@ -60,7 +60,7 @@ class FlightRecordTest : public testing::Test {
     return (pose.T.translation() - true_pose(t).translation()).norm();
   }
 
-  TrajectorySmoother record_{MapFilterConfig{}};
+  TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   SE3 T_O_B_, T_M_O_;
   Trajectory causal_;

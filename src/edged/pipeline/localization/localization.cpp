@@ -210,8 +210,8 @@ EstimatorResult Localization::estimate(const EstimatorInput& input, VisionCorrec
     session_.started_at_O = body_.now().T_O_B.translation();
     session_.scale = ScaleUncertainty(to_seconds(kPipelineTuning.judged));
     session_.uncertainty.scale_sigma.reset();
-    if (const std::optional<Matrix15d> P = session_.estimator.covariance()) take_tilt_sigma(*P);
-    mapper_.restart(T_new_old, body_.now(), session_.tilt_sigma);
+    if (const std::optional<Matrix15d> P = session_.estimator.covariance()) session_.known = uncertainty(*P);
+    mapper_.restart(T_new_old, body_.now(), session_.known ? session_.known->tilt : 0.0);
   } else if (body_.gyro_was_saturated() || body_.gap_s() > kPipelineTuning.max_gap_s) {
     mapper_.reset_uncertainty(body_.now(), body_.gap_s());
     if (body_.gap_s() > kPipelineTuning.max_gap_s) place_.end_gap();
@@ -263,7 +263,7 @@ bool Localization::update_map(Timestamp t, const VisionOutput& seen, const Estim
       status_.since_visual_update_s() > kPipelineTuning.max_unsupported_s)
     mapper_.reset_uncertainty(body_.now());
   const Motion motion = result.turning ? Motion::Turning : result.standstill ? Motion::None : Motion::Any;
-  mapper_.predict(body_.now(), motion, session_.tilt_sigma);
+  mapper_.predict(body_.now(), motion, session_.known);
   const std::vector<PosedImage> images = mapping_images(seen, result.outliers);
   if (!images.empty()) {
     relocalized = mapper_.localize(t, images, place_.doubt());
@@ -338,8 +338,11 @@ StateCovariance Localization::covariance_in_map(const Matrix15d& P) const {
           in_M(P.block<3, 3>(6, 6)) + by_yaw(now.v_O)};
 }
 
-void Localization::take_tilt_sigma(const Matrix15d& P) {
-  session_.tilt_sigma = tilt_sigma(session_.estimator.newest().T_O_B.R(), P.block<3, 3>(3, 3));
+OdomUncertainty Localization::uncertainty(const Matrix15d& P) const {
+  const auto sigma = [&](Eigen::Index first) { return std::sqrt(P.diagonal().segment<3>(first).mean()); };
+  return {.tilt = tilt_sigma(session_.estimator.newest().T_O_B.R(), P.block<3, 3>(3, 3)),
+          .velocity = sigma(6),
+          .gyro_bias = sigma(9)};
 }
 
 void Localization::update_covariance(Timestamp t) {
@@ -357,7 +360,7 @@ void Localization::update_covariance(Timestamp t) {
       session_.scale.add(t, newest.v_O, P->block<3, 3>(6, 6));
     session_.uncertainty.scale_sigma = session_.scale.sigma();
     session_.covariance = covariance_in_map(*P);
-    take_tilt_sigma(*P);
+    session_.known = uncertainty(*P);
   }
 }
 

@@ -76,7 +76,7 @@ class Localization {
     Uncertainty uncertainty = {};                                ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
-    double tilt_sigma = 0.0;  ///< [rad]; 0: not known
+    std::optional<OdomUncertainty> known = {};  ///< the same of the newest state
     Eigen::Vector3d started_at_O = Eigen::Vector3d::Zero();
   };
   Session new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier, Timestamp until) const;
@@ -89,7 +89,7 @@ class Localization {
   std::string missing_localization() const;
   std::vector<PosedImage> mapping_images(const VisionOutput& seen, const std::vector<FeatureId>& outliers);
   void update_covariance(Timestamp t);
-  void take_tilt_sigma(const Matrix15d& P);
+  OdomUncertainty uncertainty(const Matrix15d& P) const;
   PlaceUncertainty::DeadReckoning dead_reckoning() const;
   PlaceUncertainty::DeadReckoning in_place() const;
   PlaceUncertainty::DeadReckoning contradicted() const;

@@ -86,7 +86,7 @@ class FinalOptimization : public testing::Test {
   Trajectory causal_path() const { return record_.path(odom_to_map_, record_.solve(odom_to_map_)); }
 
   TestWorld world_;
-  TrajectorySmoother record_{MapFilterConfig{}};
+  TrajectorySmoother record_;
   OdomToMap odom_to_map_;
   SE3 T_O_B_;
   std::vector<StartRecord> starts_;
@@ -114,7 +114,7 @@ TEST_F(FinalOptimization, ImprovesAFlightThatNeverComesBack) {
 TEST_F(FinalOptimization, PullsDriftBackByMapMatches) {
   fly(0.0, 24.0);
   const double without = error(final_path(), 20.0);
-  record_ = TrajectorySmoother(MapFilterConfig{});
+  record_ = TrajectorySmoother();
   odom_to_map_ = {};
   keyframes_.clear();
   starts_.clear();

@@ -38,7 +38,6 @@ Mapper::Mapper(const MapConfig& config, double lost_after_s)
       lost_after_s_(lost_after_s),
       map_(config.keyframes),
       filter_(config.filter, config.localize_only),
-      record_(config.filter),
       loops_(config) {}
 
 void Mapper::restart(const SE3& T_new_old, const OdomState& now, double tilt_sigma) {
@@ -103,12 +102,11 @@ std::optional<SavedMap> Mapper::save() const {
   return now;
 }
 
-void Mapper::predict(const OdomState& now, Motion motion, double tilt_sigma) {
+void Mapper::predict(const OdomState& now, Motion motion, const std::optional<OdomUncertainty>& known) {
   const bool at_rest = motion != Motion::Any;
-  const bool drifts = dead_reckoning_s_ > 0.0 && is_young(now.t);
-  const double drift = motion == Motion::None ? 0.0 : drifts ? kMapTuning.young_drift_factor : 1.0;
-  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, drift);
-  if (tilt_sigma > 0.0) filter_.set_tilt_sigma(tilt_sigma);
+  if (known) drift_ = drift_of(*known);
+  filter_.predict(odom_to_map_.T_M_O(), now.T_O_B, now.t, motion == Motion::None ? Drift{} : drift_);
+  if (known) filter_.set_tilt_sigma(known->tilt);
   predicted_ = now.t;
   if (at_rest) last_match_ = now.t;
   if (!at_rest) path_m_ += (now.T_O_B.translation() - p_O_B_).norm();

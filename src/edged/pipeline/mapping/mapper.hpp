@@ -43,8 +43,8 @@ class Mapper {
   void reset_uncertainty(const OdomState& now, double gap_s = 0.0);
   /// A new epoch of stamps begins: the map is discarded, unless it never changes, and the body continues from its pose.
   void begin_epoch();
-  /// The odometry has reached `now`. tilt_sigma: of its tilt [rad]; 0: not known.
-  void predict(const OdomState& now, Motion motion = Motion::Any, double tilt_sigma = 0.0);
+  /// The odometry has reached `now`, which is that well known; nothing: as well as before.
+  void predict(const OdomState& now, Motion motion = Motion::Any, const std::optional<OdomUncertainty>& known = {});
   /// Matches the map in the images of one instant, one per camera, at least one; after a new start, until relocalized,
   /// by place recognition: true when it has just been relocalized. place_sigma: of the body, by a loss or a gap [m].
   bool localize(Timestamp t, std::span<const PosedImage> images, double place_sigma = 0.0);
@@ -116,13 +116,14 @@ class Mapper {
   std::vector<MapMatch> matches_;                   ///< in the newest images that were matched
   SE3 T_M_B_matched_;                               ///< then
   std::optional<Timestamp> last_search_;
-  Timestamp predicted_;            ///< newest pose of the odometry
-  Timestamp last_match_;           ///< or rest
-  Timestamp started_;              ///< the estimator's newest start
-  SE3 T_M_O_dead_reckoning_;       ///< at the newest start, by dead reckoning
-  double dead_reckoning_s_ = 0.0;  ///< duration of dead reckoning, since the last match of older keyframes
-  double gap_s_ = 0.0;             ///< the part of it without any sensor
-  bool relocalizing_ = false;      ///< since the newest start nothing older has been matched
+  Timestamp predicted_;                   ///< newest pose of the odometry
+  Drift drift_ = kMapTuning.final_drift;  ///< until the odometry knows its own
+  Timestamp last_match_;                  ///< or rest
+  Timestamp started_;                     ///< the estimator's newest start
+  SE3 T_M_O_dead_reckoning_;              ///< at the newest start, by dead reckoning
+  double dead_reckoning_s_ = 0.0;         ///< duration of dead reckoning, since the last match of older keyframes
+  double gap_s_ = 0.0;                    ///< the part of it without any sensor
+  bool relocalizing_ = false;             ///< since the newest start nothing older has been matched
   /// While set, keyframes before that are of a loaded map, in which the body is not relocalized yet.
   std::optional<Timestamp> loaded_map_until_;
   double path_m_ = 0.0;  ///< length of the odometry's path in motion
