@@ -23,6 +23,7 @@ inline constexpr FactorTuning kFactorTuning{};
 /// Landmarks and their observations.
 struct LandmarkTuning {
   double min_parallax_deg = 0.6;      ///< between the rays of a feature that becomes a landmark
+  double certain_sigmas = 2.0;        ///< by which an inverse depth is certain in what is known of translations [016]
   double translation_sigmas = 2.0;    ///< of chance: more points with parallax are before a camera than behind it [016]
   double max_innovation_sigma = 6.0;  ///< observations farther from their prediction by the IMU are removed [023]
   double track_correlation_time_s = 2.0;  ///< errors along a track correlate by exp(-dt / this) [018]

@@ -56,17 +56,18 @@ bool AnchoredLandmark::error(const CameraView& seen, const ImagePoint& point, Ve
   return true;
 }
 
-LandmarkDerivatives::LandmarkDerivatives(const AnchoredLandmark& landmark) : landmark_(landmark) {
+LandmarkDerivatives::LandmarkDerivatives(const AnchoredLandmark& landmark, double rho)
+    : landmark_(landmark), rho_(rho) {
   const CameraAt& anchor = landmark.anchor;
-  const Vector3d x_B = landmark.camera.R_B_C * landmark.bearing_C + landmark.rho * landmark.camera.t_B_C;
+  const Vector3d x_B = landmark.camera.R_B_C * landmark.bearing_C + rho * landmark.camera.t_B_C;
   by_turn_ = -anchor.R_O_B * skew(x_B) * anchor.by_turn;
   by_phi_ = -anchor.R_C_O.transpose() * skew(landmark.bearing_C);
-  by_time_ = anchor.R_O_B * anchor.rate.omega_B.cross(x_B) + landmark.rho * anchor.rate.v_O;
+  by_time_ = anchor.R_O_B * anchor.rate.omega_B.cross(x_B) + rho * anchor.rate.v_O;
   by_intrinsics_ = anchor.R_C_O.topRows<2>().transpose() * landmark.by_intrinsics;
 }
 
 bool LandmarkDerivatives::error(const CameraView& view, const ImagePoint& point, ObservationError& observation) const {
-  const double rho = landmark_.rho;
+  const double rho = rho_;
   const CameraOnBody& camera = view.camera;
   const CameraAt& seen = view.at;
   const Vector3d x_C = landmark_.in_camera(seen);

@@ -97,13 +97,14 @@ struct AnchoredLandmark {
 /// anchor's rotation, phi, the time, the lever arm and the intrinsics.
 class LandmarkDerivatives {
  public:
-  /// The landmark must outlive this.
-  explicit LandmarkDerivatives(const AnchoredLandmark& landmark);
+  /// The landmark must outlive this. rho: its inverse depth, or that at which translations count [1/m].
+  LandmarkDerivatives(const AnchoredLandmark& landmark, double rho);
   /// As AnchoredLandmark::error, with derivatives.
   bool error(const CameraView& seen, const ImagePoint& point, ObservationError& observation) const;
 
  private:
   const AnchoredLandmark& landmark_;
+  double rho_;
   Eigen::Matrix3d by_turn_, by_phi_;
   Eigen::Vector3d by_time_;
   Eigen::Matrix<double, 3, kIntrinsics> by_intrinsics_;

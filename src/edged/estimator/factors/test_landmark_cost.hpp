@@ -48,7 +48,7 @@ class LandmarkCost final : public ceres::CostFunction {
     const CameraView anchor{cameras[views_[0].camera], at[0]};
     const ImagePoint point = views_[0].image_point();  // must outlive the landmark
     const AnchoredLandmark anchored(anchor, point, *blocks[depth]);
-    const LandmarkDerivatives landmark(anchored);
+    const LandmarkDerivatives landmark(anchored, anchored.rho);
     const auto jacobian = [&](std::size_t block) { return jacobians == nullptr ? nullptr : jacobians[block]; };
     for (std::size_t i = 0; i <= depth; ++i) {
       if (double* J = jacobian(i)) std::fill_n(J, 2 * parameter_block_sizes()[i], 0.0);

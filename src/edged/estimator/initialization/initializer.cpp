@@ -235,14 +235,14 @@ InitializationResult Initializer::start_from(const Alignment& alignment, Externa
   next_solve_ = buffer_.back().t + (at_each_view ? Duration(0) : kInitializationTuning.solve_every);
   Window window = aligned_window(alignment, external);
   solve_start(window);
+  const double sigma = by_baselines ? alignment.baseline_sigma : scale_sigma(window);
+  if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
   std::string reason =
       by_baselines
           ? rejection_reason(window, kInitializationTuning.max_tilt_sigma_deg, kInitializationTuning.max_speed_sigma)
           : rejection_reason(
                 window, kInitializationTuning.max_tilt_sigma_deg * most_scale_sigma / config_.init_scale_sigma, kFree);
   if (!reason.empty()) return {{}, std::move(reason)};
-  const double sigma = by_baselines ? alignment.baseline_sigma : scale_sigma(window);
-  if (!(sigma <= most_scale_sigma)) return {{}, scale_text(sigma, most_scale_sigma)};
   return {StartWindow{std::move(window), by_baselines, sigma, alignment.outliers}};
 }
 

@@ -15,7 +15,7 @@ std::optional<Eigen::MatrixXd> covariance(const Window& window, const std::set<B
     if (others.erase(block) == 0) return std::nullopt;
   }
   const Layout layout(all, others);
-  const Eigen::MatrixXd H = normal_equations(window, cost, layout).H.dense();
+  const Eigen::MatrixXd H = normal_equations(window, cost, layout, nullptr, Purpose::Information).H.dense();
   const Eigen::Index m = layout.size - layout.leaving;
   const Eigen::VectorXd scale = unit_diagonal_scale(H.diagonal());
   EnvelopeCholesky cholesky;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "edged/estimator/solver/marginalization.hpp"
+#include "edged/estimator/solver/normal_equations.hpp"
 #include "edged/estimator/solver/sliding.hpp"
 #include "edged/estimator/test_world.hpp"
 #include "edged/estimator/window/landmarks.hpp"
@@ -70,6 +71,33 @@ TEST(Covariance, OfTheScaleStaysWhereTheScaleChanges) {
   };
   const double same = sigma_after(1.0), rescaled = sigma_after(1.5);
   EXPECT_GT(rescaled, 0.3 * same);
+}
+
+/// By landmarks alone, all of them so many times farther away than they are: the sum over the positions of the states.
+double information_on_positions(double farther, Purpose purpose) {
+  const TestWorldOptions options{.pixel_noise = 0.1};
+  TestWorld world(options);
+  Window window = tracked_window(world, options, 6);
+  triangulate_features(window, {});
+  for (const auto& [id, feature] : window.features())
+    if (feature.anchor)
+      window.move({BlockKind::InverseDepth, id}, std::array{(1.0 / farther - 1.0) * feature.inverse_depth});
+  Cost cost = cost_of(window);
+  const Layout layout(blocks_of(cost));
+  cost.prior.reset();
+  cost.factors.clear();
+  const Eigen::MatrixXd H = normal_equations(window, cost, layout, nullptr, purpose).H.dense();
+  double sum = 0.0;
+  for (const auto& [id, state] : window.states())
+    sum += H.diagonal().segment<3>(layout.offset.at({BlockKind::Pose, id})).sum();
+  return sum;
+}
+
+TEST(Covariance, TakesLittleOnTranslationsFromDepthsThatAreHardlyKnown) {
+  EXPECT_NEAR(information_on_positions(1.0, Purpose::Information) / information_on_positions(1.0, Purpose::Solution),
+              1.0, 0.02);
+  EXPECT_GT(information_on_positions(1e4, Purpose::Solution), 1e-4);
+  EXPECT_NEAR(information_on_positions(1e4, Purpose::Information), 0.0, 1e-9);
 }
 
 TEST(Covariance, IsNothingWhenADirectionIsNotDetermined) {

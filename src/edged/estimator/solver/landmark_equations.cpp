@@ -7,6 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "edged/core/statistics.hpp"
+#include "edged/estimator/tuning.hpp"
+
 namespace edged {
 namespace {
 
@@ -88,8 +91,9 @@ std::size_t entry_of(Index global, std::vector<Coupling>& couplings) {
 
 }  // namespace
 
-LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations)
-    : layout_(layout), equations_(equations), views_(window), loss_(visual_loss()) {
+LandmarkEquations::LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations,
+                                     Purpose purpose)
+    : layout_(layout), equations_(equations), purpose_(purpose), views_(window), loss_(visual_loss()) {
   constexpr Index kNowhere = -1;  // of a block that no term knows
   const auto place_of = [&](BlockKey key) {
     const auto found = layout.offset.find(key);
@@ -118,11 +122,11 @@ void LandmarkEquations::place(const LandmarkTerm& term) {
   }
 }
 
-/// use(index of the residual, error, error before)
+/// use(index of the residual, error, error before); rho: see LandmarkDerivatives.
 template <typename Use>
-void LandmarkEquations::linearise(const LandmarkTerm& term, const Use& use) const {
+void LandmarkEquations::linearise(const LandmarkTerm& term, double rho, const Use& use) const {
   const AnchoredLandmark landmark(views_.at(term.anchor.camera, term.anchor_place), term.point, *term.inverse_depth);
-  const LandmarkDerivatives derivatives(landmark);
+  const LandmarkDerivatives derivatives(landmark, rho);
   ObservationError error, before;
   bool defined = false, before_defined = false;
   for (std::size_t i = 0; i < term.residuals.size(); ++i) {
@@ -132,6 +136,19 @@ void LandmarkEquations::linearise(const LandmarkTerm& term, const Use& use) cons
     defined = derivatives.error(views_.at(at.seen.camera, at.place), at.point, error);
     if (defined && (before_defined || at.correlation == 0.0)) use(i, error, before);
   }
+}
+
+/// The expectation of an estimate's square exceeds the square by the variance: with two sigmas, because landmarks are
+/// chosen by their parallax.
+double LandmarkEquations::certain_inverse_depth(const LandmarkTerm& term) const {
+  const double rho = *term.inverse_depth;
+  double h = 0.0;
+  linearise(term, rho, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
+    const LandmarkResidual& at = term.residuals[residual];
+    h += weighted(at, error, before, loss_, at.seen.camera != term.anchor.camera).depth.squaredNorm();
+  });
+  const double squared = square(rho) - square(kLandmarkTuning.certain_sigmas) / std::max(h, kNoInformation);
+  return std::copysign(std::sqrt(std::max(squared, 0.0)), rho);
 }
 
 /// One residual of the term, at the weight of its loss.
@@ -227,7 +244,8 @@ void LandmarkEquations::eliminate_depth() {
 void LandmarkEquations::add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated) {
   if (term.residuals.empty()) return;
   place(term);
-  linearise(term, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
+  const double rho = purpose_ == Purpose::Information ? certain_inverse_depth(term) : *term.inverse_depth;
+  linearise(term, rho, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
     accumulate(residual, error, before, term);
   });
   add_own();
@@ -243,7 +261,8 @@ void LandmarkEquations::add_gradient(const LandmarkTerm& term, DepthEquation* ea
   Eigen::VectorXd& g = equations_.g;
   const Index anchor = poses_[term.anchor_place], anchor_calibration = calibrations_[term.anchor.camera];
   double g_depth = 0.0;
-  linearise(term, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
+  const double rho = *term.inverse_depth;
+  linearise(term, rho, [&](std::size_t residual, const ObservationError& error, const ObservationError& before) {
     const LandmarkResidual& at = term.residuals[residual];
     const bool other_camera = at.seen.camera != term.anchor.camera;
     const WeightedResidual J = weighted(at, error, before, loss_, other_camera);

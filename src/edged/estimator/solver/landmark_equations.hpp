@@ -9,11 +9,17 @@
 
 namespace edged {
 
+/// What equations are for: a step to the minimum, or what is known of the states. A depth that is hardly known is
+/// overestimated where only large parallax makes a landmark, and with it what the landmark tells of a translation: that
+/// counts as at the depth that is certain (decision 016).
+enum class Purpose { Solution, Information };
+
 /// Adds landmarks one by one.
 class LandmarkEquations {
  public:
   /// Layout and equations must outlive this.
-  LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations);
+  LandmarkEquations(const Window& window, const Layout& layout, NormalEquations& equations,
+                    Purpose purpose = Purpose::Solution);
   /// An inverse depth without a place in the layout is eliminated, and added to `eliminated` if there is one.
   void add(const LandmarkTerm& term, std::vector<DepthEquation>* eliminated);
   /// Adds to the gradient alone. An inverse depth is eliminated by its equation of an earlier linearization, if it has
@@ -23,7 +29,8 @@ class LandmarkEquations {
  private:
   void place(const LandmarkTerm& term);
   template <typename Use>
-  void linearise(const LandmarkTerm& term, const Use& use) const;
+  void linearise(const LandmarkTerm& term, double rho, const Use& use) const;
+  double certain_inverse_depth(const LandmarkTerm& term) const;
   void accumulate(std::size_t residual, const ObservationError& error, const ObservationError& before,
                   const LandmarkTerm& term);
   void add_own();
@@ -32,6 +39,7 @@ class LandmarkEquations {
 
   const Layout& layout_;
   NormalEquations& equations_;
+  Purpose purpose_;
   CameraPoses views_;
   const ceres::LossFunction& loss_;
   std::vector<Eigen::Index> poses_, calibrations_;  ///< global columns, by the index of a state and of a camera

@@ -64,7 +64,7 @@ LinearPrior marginalize(const Window& window, const Cost& cost, const std::set<B
   std::set<BlockKey> all_leaving = leaving;
   for (const LandmarkTerm& term : cost.landmarks) all_leaving.insert({BlockKind::InverseDepth, term.id});
   const Layout layout(blocks_of(cost), all_leaving);
-  NormalEquations equations = normal_equations(window, cost, layout);
+  NormalEquations equations = normal_equations(window, cost, layout, nullptr, Purpose::Information);
   MatrixXd all = equations.H.dense();
   eliminate(layout.leaving, all, equations.g);
 

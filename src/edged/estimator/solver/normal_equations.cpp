@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "edged/estimator/solver/landmark_equations.hpp"
-
 namespace edged {
 namespace {
 
@@ -104,7 +102,7 @@ double value_of(const Window& window, const Factor& factor) {
 }  // namespace
 
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout,
-                                 std::vector<DepthEquation>* eliminated) {
+                                 std::vector<DepthEquation>* eliminated, Purpose purpose) {
   NormalEquations equations(layout);
   LinearFactor linear;
   MatrixXd H;
@@ -115,7 +113,7 @@ NormalEquations normal_equations(const Window& window, const Cost& cost, const L
     H.selfadjointView<Eigen::Lower>().rankUpdate(linear.J.transpose());
     equations.add(H, linear.J.transpose() * linear.r, linear.blocks);
   }
-  LandmarkEquations landmarks(window, layout, equations);
+  LandmarkEquations landmarks(window, layout, equations, purpose);
   for (const LandmarkTerm& term : cost.landmarks) landmarks.add(term, eliminated);
   return equations;
 }

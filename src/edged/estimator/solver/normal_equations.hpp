@@ -3,6 +3,7 @@
 // The normal equations of a window's terms, for solving, marginalization and covariance.
 #pragma once
 
+#include "edged/estimator/solver/landmark_equations.hpp"
 #include "edged/estimator/solver/linear_system.hpp"
 #include "edged/estimator/window/cost.hpp"
 
@@ -12,7 +13,7 @@ namespace edged {
 /// at the present values (a landmark behind a camera) are skipped. Inverse depths that are not in the layout are
 /// eliminated, and added to `eliminated`, if given, for their steps.
 NormalEquations normal_equations(const Window& window, const Cost& cost, const Layout& layout,
-                                 std::vector<DepthEquation>* eliminated = nullptr);
+                                 std::vector<DepthEquation>* eliminated = nullptr, Purpose purpose = Purpose::Solution);
 
 /// The gradient of the terms alone, at the present values. The inverse depths are eliminated by their equations of an
 /// earlier linearization of the same cost, whose gradients are replaced.
