@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "edged/frontend/test_scene.hpp"
-#include "edged/frontend/tracker.hpp"
+#include "edged/frontend/trackers/klt_tracker.hpp"
 
 namespace edged {
 namespace {
@@ -40,7 +40,7 @@ void BM_Track(benchmark::State& state) {
   const PlaneScene scene(frame_camera_of(state), 2.0);
   const cv::Mat images[2] = {scene.image(SE3()), scene.image(kMotion)};
   const TrackPrediction there{kMotion.inverse(), 2.0, {}}, back{kMotion, 2.0, {}};
-  FeatureTracker tracker("bench", scene.camera(), config_of_bench());
+  KltTracker tracker("bench", scene.camera(), config_of_bench());
   FeatureId next_id = 1;
   tracker.track(images[0], Timestamp(), std::nullopt);
   tracker.detect(images[0], next_id);

@@ -80,6 +80,23 @@ TEST(FisheyeFlight, IsFollowedThroughALensThatSeesBehindItself) {
   }
 }
 
+TEST(DescriptorFlight, IsFollowedByDescriptorsInsteadOfOpticalFlow) {
+  const Flight flight = simulate_flight("room", 1, kDuration_s);
+  OdometryConfig config;
+  config.event_tracker.kind = config.frame_tracker.kind = TrackerKind::Descriptors;
+  for (const Mode mode : {Mode::Frames, Mode::Fused}) {
+    SCOPED_TRACE(mode_name(mode));
+    const FlightRun run = run_flight(flight.calibration, flight.measurements, mode, config);
+    const FlightScore result = score(flight, run);
+    std::cout << "room 1, descriptors, " << mode_name(mode) << ": " << describe(result, run.statistics) << '\n';
+    EXPECT_EQ(run.statistics.last_status(), TrackingStatus::Good);
+    EXPECT_EQ(run.statistics.times_lost(), 0U);
+    EXPECT_GT(run.statistics.coverage(), 0.9);
+    EXPECT_LT(result.evaluation.ate_m.rmse, 0.013);    // 0.006, 0.005
+    EXPECT_NEAR(result.evaluation.scale, 1.0, 0.012);  // 0.004, 0.000
+  }
+}
+
 std::string name_of(const testing::TestParamInfo<FlightCase>& info) {
   return info.param.preset + "_" + std::to_string(info.param.seed);
 }

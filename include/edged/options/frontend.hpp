@@ -69,7 +69,14 @@ struct StereoConfig {
   void visit(ConfigFields& fields);
 };
 
+/// How features are found in the next image: a row of frontend/tracker_table.cpp each.
+enum class TrackerKind {
+  Klt,          ///< optical flow, and alignment to reference patches
+  Descriptors,  ///< ORB descriptors of corners near the predicted position
+};
+
 struct TrackerConfig {
+  TrackerKind kind = TrackerKind::Klt;
   DetectorConfig detector;
   KltConfig klt;
   OutlierConfig outliers;

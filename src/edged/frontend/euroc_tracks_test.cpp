@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "edged/core/test_data.hpp"
-#include "edged/frontend/tracker.hpp"
+#include "edged/frontend/trackers/klt_tracker.hpp"
 
 namespace edged {
 namespace {
@@ -30,7 +30,7 @@ TEST(EurocTracks, MostCornersSurviveFromImageToImage) {
   if (images.empty()) GTEST_SKIP() << "no data";
   const CameraModel camera(752, 480, 458.654, 457.296, 367.215, 248.375, DistortionModel::RadTan,
                            {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0});
-  FeatureTracker tracker("cam0", camera, {});
+  KltTracker tracker("cam0", camera, {});
   FeatureId next_id = 1;
   int before = 0, after = 0;
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -15,13 +15,8 @@
 namespace edged {
 namespace {
 
-cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
-Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
-
-float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
 /// 255 where the detector of this camera must not place corners.
-cv::Mat unused_pixels(const CameraModel& camera, int border_px) {
+cv::Mat unused_pixels_of(const CameraModel& camera, int border_px) {
   if (!camera.view_limit() && !camera.is_masked()) return {};
   cv::Mat unused(camera.height(), camera.width(), CV_8UC1);
   for (int y = 0; y < unused.rows; ++y)
@@ -30,44 +25,24 @@ cv::Mat unused_pixels(const CameraModel& camera, int border_px) {
   return unused;
 }
 
-template <typename T>
-std::vector<T> select(const std::vector<T>& values, const std::vector<std::size_t>& indices) {
-  std::vector<T> selected;
-  selected.reserve(indices.size());
-  for (const std::size_t i : indices) selected.push_back(values[i]);
-  return selected;
+Eigen::Vector2d median_innovation(const TrackInput& input, const TrackMatches& matches) {
+  std::vector<double> dx, dy;
+  for (std::size_t i = 0; i < matches.points.size(); ++i) {
+    if (!matches.kept[i]) continue;
+    dx.push_back(matches.points[i].x - input.seeds[i].x);
+    dy.push_back(matches.points[i].y - input.seeds[i].y);
+  }
+  return {median(dx), median(dy)};
 }
 
 }  // namespace
-
-void ReferencePatchConfig::visit(ConfigFields& fields) {
-  fields.add("enabled", enabled,
-             {.effect = "Align features to their reference patches, which removes the drift of optical flow."});
-  patch.visit(fields);
-}
-
-void TrackerConfig::visit(ConfigFields& fields) {
-  fields.group("detector", detector);
-  fields.group("klt", klt);
-  fields.group("outliers", outliers);
-  fields.group("templates", reference_patches);
-  fields.add("forward_backward_px", forward_backward_px,
-             {"px", 0.01, 100, "A track that is followed backwards must return this close to its start."});
-  fields.add("min_correlation", min_correlation,
-             {"1", -1, 1, "Least correlation of a track's patch with the one in the previous image."});
-  fields.add("sigma_px", sigma_px, {"px", 0.01, 20, "Standard deviation of an observation in the estimator."});
-}
 
 FeatureTracker::FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config)
     : name_(std::move(camera_name)),
       camera_(camera),
       config_(config),
-      unused_(unused_pixels(camera, config.detector.border_px)),
-      reference_patches_(camera, config.reference_patches.patch) {
+      unused_(unused_pixels_of(camera, config.detector.border_px)) {
   EDGED_CHECK(camera.width() > 0 && camera.height() > 0, "camera {} has no size", name_);
-  if (config.klt.window_px % 2 == 0) {
-    throw InputError::format("klt.window_px = {} must be odd, e.g. {}", config.klt.window_px, config.klt.window_px + 1);
-  }
 }
 
 TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
@@ -80,19 +55,14 @@ TrackSummary FeatureTracker::track(const cv::Mat& image, Timestamp t,
     return summary;
   }
   check_image(image);
-  current_.build(image, config_.klt);
-  increments_ = prediction ? prediction->increments : BrightnessIncrements();
-  if (prediction && prediction->reference_patches) {
-    reference_patches_.move(prediction->T_cur_prev);
-  } else {
-    reference_patches_.clear();
-  }
-  if (!tracks_.empty()) {
-    Matches matches = match_all(prediction, summary);
-    merge(matches);
-    apply(matches, summary);
-  }
-  std::swap(previous_, current_);
+  const TrackInput input = input_of(image, prediction ? &*prediction : nullptr);
+  TrackMatches matches = match(input);
+  if (prediction && !matches.prediction_failed) summary.median_innovation_px = median_innovation(input, matches);
+  summary.prediction_failed = matches.prediction_failed;
+  merge(matches);
+  learn(input, matches);
+  apply(matches);
+  summary.tracked = static_cast<int>(tracks_.size());
   return summary;
 }
 
@@ -130,7 +100,7 @@ int FeatureTracker::detect(const cv::Mat& image, FeatureId& next_id, int most) {
   for (const Track& track : tracks_) occupied.push_back(track.pixel);
   const int limit = std::min(most, config_.detector.max_features) - static_cast<int>(tracks_.size());
   if (limit <= 0) return 0;
-  const std::vector<Corner> corners = detect_corners(image, occupied, limit, config_.detector, unused_);
+  const std::vector<Corner> corners = find_corners(image, occupied, limit);
   for (const Corner& corner : corners) {
     tracks_.push_back(first_track(next_id++, corner.pixel));
   }
@@ -142,7 +112,7 @@ const Track* FeatureTracker::find(FeatureId id) const {
   return track != tracks_.end() && track->id == id ? &*track : nullptr;
 }
 
-void FeatureTracker::add_feature(FeatureId id, const Eigen::Vector2d& pixel) {
+void FeatureTracker::add(FeatureId id, const Eigen::Vector2d& pixel) {
   std::erase_if(tracks_, [&](const Track& track) { return (track.pixel - pixel).norm() < config_.merge_px; });
   const auto next = std::ranges::lower_bound(tracks_, id, {}, &Track::id);
   EDGED_CHECK(next == tracks_.end() || next->id != id, "camera {} follows feature {} already", name_, id);
@@ -160,7 +130,6 @@ void FeatureTracker::mark_keyframe() {
     track.in_keyframe = true;
   }
   keyframe_tracks_ = static_cast<int>(tracks_.size());
-  if (config_.reference_patches.enabled) reference_patches_.extract({previous_.image(), increments_}, tracks_);
 }
 
 KeyframeTracks FeatureTracker::since_keyframe(const Eigen::Matrix3d& R_kf_cur) const {
@@ -177,8 +146,6 @@ void FeatureTracker::remove(std::span<const FeatureId> ids) {
 
 void FeatureTracker::reset() {
   tracks_.clear();
-  previous_.clear();
-  reference_patches_.clear();
   keyframe_tracks_ = 0;
 }
 
@@ -199,118 +166,30 @@ void FeatureTracker::check_image(const cv::Mat& image) const {
   }
 }
 
-/// The expected position of each track in the new image's camera [m].
-std::vector<Eigen::Vector3d> FeatureTracker::expected(const TrackPrediction& prediction) const {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(tracks_.size());
+std::vector<Corner> FeatureTracker::find_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied,
+                                                 int limit) const {
+  return detect_corners(image, occupied, limit, config_.detector, unused_);
+}
+
+TrackInput FeatureTracker::input_of(const cv::Mat& image, const TrackPrediction* prediction) const {
+  TrackInput input{image, prediction, {}, {}};
+  input.seeds.reserve(tracks_.size());
   for (const Track& track : tracks_) {
-    const std::optional<double> own = prediction.depth ? prediction.depth(track.id) : std::nullopt;
-    points.emplace_back(prediction.T_cur_prev * (own.value_or(prediction.scene_depth) * track.point.homogeneous()));
-  }
-  return points;
-}
-
-std::vector<cv::Point2f> FeatureTracker::projected(const std::vector<Eigen::Vector3d>& points_C,
-                                                   const Eigen::Vector2d& offset_px) const {
-  std::vector<cv::Point2f> seeds;
-  seeds.reserve(points_C.size());
-  for (const Eigen::Vector3d& p_C : points_C) {
+    if (!prediction) {
+      input.seeds.push_back(to_cv(track.pixel));
+      continue;
+    }
+    const std::optional<double> own = prediction->depth ? prediction->depth(track.id) : std::nullopt;
+    const Eigen::Vector3d& p_C = input.expected_C.emplace_back(
+        prediction->T_cur_prev * (own.value_or(prediction->scene_depth) * track.point.homogeneous()));
     const std::optional<Eigen::Vector2d> pixel = camera_.project(p_C);
-    // A position far outside marks a point behind the camera; match() ends such tracks at the border.
-    seeds.push_back(pixel ? to_cv(*pixel + offset_px) : cv::Point2f(-1e6F, -1e6F));
+    // A position far outside marks a point behind the camera: no tracker finds it there.
+    input.seeds.push_back(pixel ? to_cv(*pixel + prediction->offset_px) : cv::Point2f(-1e6F, -1e6F));
   }
-  return seeds;
+  return input;
 }
 
-FeatureMotion FeatureTracker::motion_of(const Track& track, std::size_t i, const Matches& matches) {
-  const Eigen::Vector2d pixel = to_eigen(matches.points[i]);
-  return {pixel, pixel - track.pixel, matches.expected_C[i]};
-}
-
-FeatureTracker::Matches FeatureTracker::match(const std::vector<cv::Point2f>& from,
-                                              const std::vector<cv::Point2f>& seeds,
-                                              std::vector<Eigen::Vector3d> expected_C) const {
-  Matches matches{seeds, std::vector<char>(from.size(), 0), std::vector<char>(from.size(), 0), std::move(expected_C)};
-  // On event frames the predicted position is a better start of the alignment than that of the optical flow, which
-  // follows the appearance of an edge under the motion.
-  const bool on_events = !increments_.image.empty();
-  std::vector<std::size_t> unaligned;
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (!camera_.contains(to_eigen(seeds[i]))) continue;  // NaN, too
-    if (!on_events || !align(i, matches)) unaligned.push_back(i);
-  }
-  const bool aligned_later = !matches.expected_C.empty() && !reference_patches_.empty();
-  const Flow forward = follow(
-      previous_, current_, select(from, unaligned), select(seeds, unaligned),
-      aligned_later ? std::min(kFrontendTuning.predicted_top_level, config_.klt.levels - 1) : config_.klt.levels - 1,
-      config_.klt, aligned_later ? kFrontendTuning.coarse_flow_step_px : kFrontendTuning.flow_step_px);
-  std::vector<std::size_t> otherwise;  // matches, or has no reference patch
-  for (std::size_t k = 0; k < unaligned.size(); ++k) {
-    const std::size_t i = unaligned[k];
-    matches.points[i] = forward.points[k];
-    const bool inside = camera_.contains(to_eigen(forward.points[k]), kFrontendTuning.border_px);
-    matches.kept[i] = inside && forward.found[k];
-    if (matches.kept[i] && !align(i, matches)) otherwise.push_back(i);
-  }
-  match_back(from, otherwise, matches);
-  return matches;
-}
-
-/// To the reference patch of the track, near the present match. False if it does not match there.
-bool FeatureTracker::align(std::size_t i, Matches& matches) const {
-  if (matches.expected_C.empty()) return false;
-  const std::optional<Eigen::Vector2d> aligned =
-      reference_patches_.align(tracks_[i].id, {current_.image(), increments_}, motion_of(tracks_[i], i, matches));
-  if (!aligned || !camera_.contains(*aligned, kFrontendTuning.border_px)) return false;
-  matches.points[i] = to_cv(*aligned);
-  matches.kept[i] = 1;
-  matches.matches_reference[i] = 1;
-  return true;
-}
-
-/// Tracks that no reference patch confirms must pass the forward-backward check and the correlation with the last
-/// image.
-void FeatureTracker::match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which,
-                                Matches& matches) const {
-  const Flow backward = follow(current_, previous_, select(matches.points, which), select(from, which),
-                               kFrontendTuning.predicted_top_level, config_.klt);
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    const std::size_t i = which[k];
-    matches.kept[i] =
-        backward.found[k] && distance(backward.points[k], from[i]) <= config_.forward_backward_px &&
-        patch_correlation(previous_.image(), from[i], current_.image(), matches.points[i]) >= config_.min_correlation;
-  }
-}
-
-FeatureTracker::Matches FeatureTracker::match_all(const std::optional<TrackPrediction>& prediction,
-                                                  TrackSummary& summary) const {
-  std::vector<cv::Point2f> from;
-  for (const Track& track : tracks_) from.push_back(to_cv(track.pixel));
-  if (!prediction) return match(from, from, {});
-
-  std::vector<Eigen::Vector3d> expected_C = expected(*prediction);
-  const std::vector<cv::Point2f> seeds = projected(expected_C, prediction->offset_px);
-  Matches matches = match(from, seeds, std::move(expected_C));
-  const auto kept = [](const Matches& m) { return std::ranges::count(m.kept, 1); };
-  const auto all = static_cast<double>(from.size());
-  if (all - static_cast<double>(kept(matches)) > kFrontendTuning.retry_share * all) {
-    // The few tracks that survive a bad prediction are likely wrong, and so is its warp: all are tracked again without
-    // it.
-    Matches again = match(from, from, {});
-    summary.prediction_failed = kept(again) > kept(matches);
-    if (summary.prediction_failed) return again;
-  }
-  std::vector<double> dx, dy;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!matches.kept[i]) continue;
-    dx.push_back(matches.points[i].x - seeds[i].x);
-    dy.push_back(matches.points[i].y - seeds[i].y);
-  }
-  summary.median_innovation_px = {median(dx), median(dy)};
-  return matches;
-}
-
-void FeatureTracker::merge(Matches& matches) const {
+void FeatureTracker::merge(TrackMatches& matches) const {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (!matches.kept[i]) continue;
     for (std::size_t j = i + 1; j < tracks_.size(); ++j) {  // j is younger, or of another camera
@@ -319,16 +198,11 @@ void FeatureTracker::merge(Matches& matches) const {
   }
 }
 
-void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
+void FeatureTracker::apply(const TrackMatches& matches) {
   std::vector<Track> alive;
   alive.reserve(tracks_.size());
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (!matches.kept[i]) continue;
-    reference_patches_.set_fits(tracks_[i].id, matches.matches_reference[i]);
-    if (!matches.expected_C.empty()) {
-      reference_patches_.update_gradient(tracks_[i].id, {current_.image(), increments_},
-                                         motion_of(tracks_[i], i, matches), matches.matches_reference[i]);
-    }
     Track track = tracks_[i];
     track.previous_pixel = track.pixel;
     track.previous_point = track.point;
@@ -338,7 +212,6 @@ void FeatureTracker::apply(const Matches& matches, TrackSummary& summary) {
     alive.push_back(track);
   }
   tracks_ = std::move(alive);
-  summary.tracked = static_cast<int>(tracks_.size());
 }
 
 }  // namespace edged

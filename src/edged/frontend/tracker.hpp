@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// Tracks features through the images of one camera: the same class for event frames and for standard frames.
+// Tracks features through the images of one camera: the same interface for event frames and for standard frames, and
+// for all kinds of trackers.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,15 +18,19 @@
 #include "edged/core/observation.hpp"
 #include "edged/frontend/detector.hpp"
 #include "edged/frontend/keyframe_policy.hpp"
-#include "edged/frontend/klt.hpp"
 #include "edged/frontend/outliers.hpp"
-#include "edged/frontend/patches/reference_patches.hpp"
+#include "edged/frontend/patches/gradient_patch.hpp"
 #include "edged/options/frontend.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
 #include "edged/track.hpp"
 
 namespace edged {
+
+// Pixels as OpenCV has them.
+inline cv::Point2f to_cv(const Eigen::Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
+inline Eigen::Vector2d to_eigen(const cv::Point2f& p) { return {p.x, p.y}; }
+inline float distance(const cv::Point2f& a, const cv::Point2f& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// The predicted motion and depth of the features in the next image.
 struct TrackPrediction {
@@ -41,12 +49,32 @@ struct TrackSummary {
   Eigen::Vector2d median_innovation_px = Eigen::Vector2d::Zero();  ///< measured - expected; zero without prediction
 };
 
-/// A cycle is track, reject_outliers, then at a keyframe (or when needs_detection) detect, and mark_keyframe at a
-/// keyframe. Deterministic; one object per camera, not thread safe.
+/// The next image of the tracks, and where they are expected in it.
+struct TrackInput {
+  const cv::Mat& image;
+  const TrackPrediction* prediction;        ///< null: there is none
+  std::vector<Eigen::Vector3d> expected_C;  ///< one per track, in the camera [m]; empty without prediction
+  std::vector<cv::Point2f> seeds;           ///< one per track: its expected pixel, or its last one without prediction
+};
+
+/// Where the tracks have been found, one entry each.
+struct TrackMatches {
+  std::vector<cv::Point2f> points;
+  std::vector<char> kept;          ///< set where the track goes on
+  bool prediction_failed = false;  ///< the old positions were better seeds and were used
+};
+
+/// The tracks of one camera, in any kind of tracker. What kinds differ in is protected and virtual: a kind matches the
+/// tracks with the next image, and may have references and a detector of its own. A cycle is track, reject_outliers,
+/// then at a keyframe (or when needs_detection) detect, and mark_keyframe at a keyframe. Deterministic; one object per
+/// camera, not thread safe.
 class FeatureTracker {
  public:
   /// camera: model of the images given to track (the ideal pinhole for undistorted event frames).
   FeatureTracker(std::string camera_name, const CameraModel& camera, const TrackerConfig& config);
+  virtual ~FeatureTracker() = default;
+  FeatureTracker(FeatureTracker&&) = default;
+  FeatureTracker& operator=(FeatureTracker&&) = default;
 
   /// Follows all tracks into image (CV_8UC1, size of the camera). An empty image ends all tracks. Throws InputError
   /// when the size or type does not fit.
@@ -64,7 +92,9 @@ class FeatureTracker {
 
   /// Adds the feature of another camera, found here in the newest image; not one that is followed already. A track at
   /// that place is the same feature under another name and ends.
-  void add_feature(FeatureId id, const Eigen::Vector2d& pixel);
+  void add(FeatureId id, const Eigen::Vector2d& pixel);
+  /// Ends the tracks that another part has rejected. Unknown ids are ignored.
+  void remove(std::span<const FeatureId> ids);
   /// Null where it is not followed.
   const Track* find(FeatureId id) const;
 
@@ -72,16 +102,13 @@ class FeatureTracker {
   bool needs_detection() const;
 
   /// From now on the newest image is the keyframe that parallax and outliers are measured against.
-  void mark_keyframe();
+  virtual void mark_keyframe();
 
   /// R_kf_cur: camera now to camera at the last keyframe.
   KeyframeTracks since_keyframe(const Eigen::Matrix3d& R_kf_cur) const;
 
-  /// Ends the tracks that another part has rejected. Unknown ids are ignored.
-  void remove(std::span<const FeatureId> ids);
-
   /// Ends all tracks and forgets the last image.
-  void reset();
+  virtual void reset();
 
   /// In the order of the tracks' ids; sigma = sigma_px / mean focal length.
   CameraObservations observations() const;
@@ -89,40 +116,34 @@ class FeatureTracker {
   const std::vector<Track>& tracks() const { return tracks_; }
   const CameraModel& camera() const { return camera_; }
 
- private:
-  struct Matches {
-    std::vector<cv::Point2f> points;
-    std::vector<char> kept;               ///< set where the track goes on
-    std::vector<char> matches_reference;  ///< set to the position that matches the reference patch
-    std::vector<Eigen::Vector3d>
-        expected_C;  ///< one per track, for the warp of its reference patch [m]; empty: unknown
-  };
+ protected:
+  /// Finds all tracks in the next image. Called with every image, also without tracks.
+  virtual TrackMatches match(const TrackInput& input) = 0;
+  /// Takes the newest image as the last one, once tracks that have met have ended in `matches`; tracks() are still
+  /// those of the image before.
+  virtual void learn(const TrackInput& input, const TrackMatches& matches) = 0;
+  /// Corners for new features: at most `limit`, strongest first, none near the pixels of `occupied`.
+  virtual std::vector<Corner> find_corners(const cv::Mat& image, std::span<const Eigen::Vector2d> occupied,
+                                           int limit) const;
 
+  const TrackerConfig& config() const { return config_; }
+  /// 255 where there must be no corners; empty where the whole image is used.
+  const cv::Mat& unused_pixels() const { return unused_; }
+
+ private:
   void check_image(const cv::Mat& image) const;
   Track first_track(FeatureId id, const Eigen::Vector2d& pixel) const;
-  std::vector<Eigen::Vector3d> expected(const TrackPrediction& prediction) const;
-  std::vector<cv::Point2f> projected(const std::vector<Eigen::Vector3d>& points_C,
-                                     const Eigen::Vector2d& offset_px) const;
-  Matches match(const std::vector<cv::Point2f>& from, const std::vector<cv::Point2f>& seeds,
-                std::vector<Eigen::Vector3d> expected_C) const;
-  Matches match_all(const std::optional<TrackPrediction>& prediction, TrackSummary& summary) const;
-  /// The i-th track in the newest image.
-  static FeatureMotion motion_of(const Track& track, std::size_t i, const Matches& matches);
-  bool align(std::size_t i, Matches& matches) const;
-  void match_back(const std::vector<cv::Point2f>& from, const std::vector<std::size_t>& which, Matches& matches) const;
-  void merge(Matches& matches) const;
-  void apply(const Matches& matches, TrackSummary& summary);
+  TrackInput input_of(const cv::Mat& image, const TrackPrediction* prediction) const;
+  void merge(TrackMatches& matches) const;
+  void apply(const TrackMatches& matches);
 
   std::string name_;
   CameraModel camera_;
   TrackerConfig config_;
-  cv::Mat unused_;             // for the detector; empty where the whole image is used
+  cv::Mat unused_;
   std::vector<Track> tracks_;  // by id, so oldest first
   Timestamp now_;
   int keyframe_tracks_ = 0;
-  ReferencePatches reference_patches_;
-  BrightnessIncrements increments_;  // of the newest image
-  ImagePyramid previous_, current_;  // current_ is the newest only while track runs
 };
 
 }  // namespace edged

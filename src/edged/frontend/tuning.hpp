@@ -24,6 +24,13 @@ struct FrontendTuning {
   double retry_share = 0.5;           ///< share of lost tracks above which the prediction counts as wrong
   double refill_share = 0.5;          ///< share of max_features below which detection is needed
 
+  // Descriptors, in images as wide as reference_width_px.
+  double predicted_search_px = 8.0;   ///< radius around the predicted position
+  double search_px = 20.0;            ///< radius around the last position, without a prediction
+  double candidate_cell_px = 6.0;     ///< side of a cell with one candidate
+  double max_descriptor_bits = 64.0;  ///< of 256 that differ
+  double max_descriptor_ratio = 0.8;  ///< of the best match over the second best (Lowe, 2004)
+
   // Outliers (OpenGV).
   double ransac_confidence = 0.999;
   int ransac_iterations = 100;

@@ -6,9 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
-#include <opencv2/features2d.hpp>
 #include <random>
 
 #include "edged/map/tuning.hpp"
@@ -85,38 +83,12 @@ bool agrees(const PlaceMatch& match, const SE3& T_C_M, double max_error) {
   return p_C.z() > 0.0 && (p_C.hnormalized() - match.point).norm() < max_error;
 }
 
-/// Without an instruction that counts bits, which not every x86-64 has: counts in fields of 2, 4 and 8 bits side by
-/// side.
-int distance(const Descriptor& a, const Descriptor& b) {
-  constexpr std::uint64_t kTwos = 0x3333333333333333, kFours = 0x0f0f0f0f0f0f0f0f, kEights = 0x00ff00ff00ff00ff;
-  std::uint64_t eights = 0;  // at most 32 in each
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::uint64_t bits = a[i] ^ b[i];
-    bits -= (bits >> 1) & 0x5555555555555555;
-    bits = (bits & kTwos) + ((bits >> 2) & kTwos);
-    eights += (bits + (bits >> 4)) & kFours;
-  }
-  const std::uint64_t sixteens = (eights & kEights) + ((eights >> 8) & kEights);
-  return static_cast<int>((sixteens * 0x0001000100010001) >> 48);
-}
-
 std::vector<std::optional<Descriptor>> describe(const cv::Mat& image, std::span<const Eigen::Vector2d> pixels,
                                                 std::span<const Eigen::Vector2d> points, const Eigen::Vector3d& up_C) {
-  constexpr float kSize_px = 31.0F;
-  std::vector<cv::KeyPoint> features;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (const auto deg = upright_deg(points[i], up_C))
-      features.emplace_back(static_cast<float>(pixels[i].x()), static_cast<float>(pixels[i].y()), kSize_px, *deg, 0.0F,
-                            0, static_cast<int>(i));
-  }
-  cv::Mat rows;
-  if (!features.empty()) cv::ORB::create(500, 1.2F, 1)->compute(image, features, rows);  // drops what is near the rim
-  std::vector<std::optional<Descriptor>> descriptors(pixels.size());
-  for (int row = 0; row < rows.rows; ++row) {
-    Descriptor& descriptor = descriptors[static_cast<std::size_t>(features[row].class_id)].emplace();
-    std::memcpy(descriptor.data(), rows.ptr(row), sizeof(Descriptor));
-  }
-  return descriptors;
+  constexpr int kBorder_px = 31;
+  std::vector<std::optional<float>> angles_deg;
+  for (const Eigen::Vector2d& point : points) angles_deg.push_back(upright_deg(point, up_C));
+  return describe(image, pixels, angles_deg, kBorder_px);
 }
 
 std::optional<PlacePose> pose_by_gravity(std::span<const PlaceMatch> matches, const Eigen::Quaterniond& R_O_C,

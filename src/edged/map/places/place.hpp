@@ -5,22 +5,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "edged/frontend/descriptor.hpp"
 #include "edged/se3.hpp"
 
 namespace edged {
-
-/// 256 comparisons of grey levels around a feature (ORB, by OpenCV).
-using Descriptor = std::array<std::uint64_t, 4>;
-
-/// Number of bits that differ.
-int distance(const Descriptor& a, const Descriptor& b);
 
 /// One for each feature; nothing near the image border, and where the ray is vertical, as gravity has no direction in
 /// the image there. points: the same on the unit plane; up_C: the upward direction, in the camera.

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
@@ -99,18 +98,6 @@ TEST(Describe, LeavesOutTheRimAndWhatLiesStraightUpOrDown) {
   const cv::Mat tiny(6, 8, CV_8UC1, cv::Scalar(90));
   EXPECT_FALSE(
       describe(tiny, std::vector<Eigen::Vector2d>{{4, 3}}, std::vector<Eigen::Vector2d>{{0, 0}}, {0, -1, 0})[0]);
-}
-
-TEST(Place, CountsTheBitsThatDiffer) {
-  const Descriptor none{}, all{~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}};
-  EXPECT_EQ(distance(none, all), 256);
-  std::mt19937_64 random(1);
-  for (int i = 0; i < 100; ++i) {
-    const Descriptor a{random(), random(), random(), random()}, b{random(), random(), random(), random()};
-    int bits = 0;
-    for (std::size_t word = 0; word < a.size(); ++word) bits += std::popcount(a[word] ^ b[word]);
-    EXPECT_EQ(distance(a, b), bits);
-  }
 }
 
 }  // namespace

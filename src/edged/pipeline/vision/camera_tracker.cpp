@@ -28,9 +28,9 @@ void CameraTracker::track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, T
                           const std::optional<LampCycle>& lamp) {
   prediction.T_cur_prev = T_O_C(T_O_B).inverse() * T_O_C(T_O_Blast);
   prediction.offset_px = alignment_px_;
-  const TrackSummary summary = features.track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
+  const TrackSummary summary = features->track(image, t, any_image_ ? std::optional(prediction) : std::nullopt);
   if (any_image_ && lamp) {
-    shift_.update(lamp->phase(t), t - last_image_, features.tracks(), prediction);
+    shift_.update(lamp->phase(t), t - last_image_, features->tracks(), prediction);
   } else {
     shift_.reset();
   }
@@ -60,8 +60,8 @@ void CameraTracker::update_survival_rate(const TrackSummary& summary, Timestamp 
 }
 
 CameraObservations CameraTracker::observations() const {
-  CameraObservations observations = features.observations();
-  shift_.correct(observations, features.tracks());
+  CameraObservations observations = features->observations();
+  shift_.correct(observations, features->tracks());
   if (survival_rate_ < health_.min_survival_rate) observations.features.clear();
   for (FeatureObservation& observation : observations.features) observation.sigma /= survival_rate_;
   return observations;
@@ -69,11 +69,11 @@ CameraObservations CameraTracker::observations() const {
 
 void CameraTracker::reject(const SE3& T_O_B, bool trust_gyro) {
   const auto rotation = trust_gyro ? std::optional(since_keyframe(T_O_B)) : std::nullopt;
-  features.reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
+  features->reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }
 
 void CameraTracker::mark_keyframe(const SE3& T_O_B) {
-  features.mark_keyframe();
+  features->mark_keyframe();
   T_O_Bkeyframe = T_O_B;
 }
 

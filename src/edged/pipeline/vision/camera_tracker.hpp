@@ -4,11 +4,12 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <span>
 
 #include "edged/events/flicker.hpp"
-#include "edged/frontend/tracker.hpp"
+#include "edged/frontend/tracker_table.hpp"
 #include "edged/options.hpp"
 #include "edged/pipeline/localization/imu_propagator.hpp"
 #include "edged/pipeline/vision/exposure_shift.hpp"
@@ -21,7 +22,10 @@ class CameraTracker {
   /// image_model: camera model of its images (the ideal pinhole for undistorted event frames).
   CameraTracker(const RigCamera& rig_camera, const CameraModel& image_model, const TrackerConfig& config,
                 const AlignmentConfig& alignment, const HealthConfig& health)
-      : camera(rig_camera), features(rig_camera.name, image_model, config), alignment_(alignment), health_(health) {}
+      : camera(rig_camera),
+        features(make_tracker(rig_camera.name, image_model, config)),
+        alignment_(alignment),
+        health_(health) {}
 
   SE3 T_O_C(const SE3& T_O_B) const { return T_O_B * camera.T_B_C; }
   /// The body at the instant of the image of a packet: at its time, plus the residual time offset of the camera.
@@ -41,7 +45,7 @@ class CameraTracker {
   /// Track survival rate: running mean of the share of tracks that survive an image, 0 .. 1.
   double survival_rate() const { return survival_rate_; }
   /// Effective number of tracks: the number that likely survives the next image.
-  double effective_tracks() const { return survival_rate_ * static_cast<double>(features.tracks().size()); }
+  double effective_tracks() const { return survival_rate_ * static_cast<double>(features->tracks().size()); }
   /// The observations at the stamp of the present image, with a sigma that grows as fewer tracks survive; none when the
   /// camera is ignored.
   CameraObservations observations() const;
@@ -56,11 +60,11 @@ class CameraTracker {
   /// Transforms all stored poses to another odometry frame.
   void move(const SE3& T_new_old);
 
-  RigCamera camera;  ///< with the calibration of the estimator
-  FeatureTracker features;
-  bool only_one_of_its_kind = false;  ///< in the run
-  SE3 T_O_Blast;                      ///< at the last image
-  SE3 T_O_Bkeyframe;                  ///< at the last keyframe
+  RigCamera camera;                          ///< with the calibration of the estimator
+  std::unique_ptr<FeatureTracker> features;  ///< of the kind that the option says
+  bool only_one_of_its_kind = false;         ///< in the run
+  SE3 T_O_Blast;                             ///< at the last image
+  SE3 T_O_Bkeyframe;                         ///< at the last keyframe
 
  private:
   void align(const TrackSummary& summary);

@@ -19,7 +19,7 @@ class ChannelHealth : public testing::Test {
   CameraTracker start() {
     CameraTracker tracker(camera_, scene_.camera(), {}, {}, {});
     show(tracker, scene_.image({}), 0);
-    tracker.features.detect(scene_.image({}), next_id_, 1000);
+    tracker.features->detect(scene_.image({}), next_id_, 1000);
     tracker.mark_keyframe({});
     return tracker;
   }
@@ -45,7 +45,7 @@ TEST_F(ChannelHealth, ObservationsOfTracksThatSurviveKeepTheirSigma) {
   CameraTracker tracker = start();
   for (int i = 1; i <= 10; ++i) show(tracker, scene_.image({}), i);
   EXPECT_DOUBLE_EQ(tracker.survival_rate(), 1.0);
-  const CameraObservations raw = tracker.features.observations(), weighed = tracker.observations();
+  const CameraObservations raw = tracker.features->observations(), weighed = tracker.observations();
   ASSERT_GT(weighed.features.size(), 50U);
   EXPECT_DOUBLE_EQ(weighed.features[0].sigma, raw.features[0].sigma);
 }
@@ -56,7 +56,7 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
   const double after_one = tracker.survival_rate();
   EXPECT_LT(after_one, 1.0);
   for (int i = 2; i <= 30; ++i) {
-    tracker.features.detect(darkness(), next_id_, 1000);
+    tracker.features->detect(darkness(), next_id_, 1000);
     tracker.mark_keyframe({});
     show(tracker, darkness(), i);
   }
@@ -67,13 +67,13 @@ TEST_F(ChannelHealth, ACameraThatLosesItsTracksCountsLessAndThenNothing) {
 TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
   CameraTracker tracker = start();
   for (int i = 1; i <= 30; ++i) {
-    tracker.features.detect(darkness(), next_id_, 1000);
+    tracker.features->detect(darkness(), next_id_, 1000);
     tracker.mark_keyframe({});
     show(tracker, darkness(), i);
   }
   for (int i = 31; i <= 80; ++i) {
     show(tracker, scene_.image({}), i);
-    tracker.features.detect(scene_.image({}), next_id_, 1000);
+    tracker.features->detect(scene_.image({}), next_id_, 1000);
     tracker.mark_keyframe({});
   }
   EXPECT_GT(tracker.survival_rate(), 0.95);
@@ -83,20 +83,20 @@ TEST_F(ChannelHealth, ACameraThatSeesAgainIsTrustedAgain) {
 TEST_F(ChannelHealth, NoMoreCornersThanWanted) {
   CameraTracker tracker(camera_, scene_.camera(), {}, {}, {});
   show(tracker, scene_.image({}), 0);
-  tracker.features.detect(scene_.image({}), next_id_, 25);
+  tracker.features->detect(scene_.image({}), next_id_, 25);
   tracker.mark_keyframe({});
-  EXPECT_EQ(tracker.features.tracks().size(), 25U);
-  tracker.features.detect(scene_.image({}), next_id_, 10);
+  EXPECT_EQ(tracker.features->tracks().size(), 25U);
+  tracker.features->detect(scene_.image({}), next_id_, 10);
   tracker.mark_keyframe({});
-  EXPECT_EQ(tracker.features.tracks().size(), 25U) << "live tracks stay";
+  EXPECT_EQ(tracker.features->tracks().size(), 25U) << "live tracks stay";
 }
 
 TEST_F(ChannelHealth, TheCameraThatCarriesMoreTracksLeads) {
   const cv::Mat image = scene_.image({});
-  CameraTracker few(camera_, scene_.camera(), {}, {}, {}), many = few;
+  CameraTracker few(camera_, scene_.camera(), {}, {}, {}), many(camera_, scene_.camera(), {}, {}, {});
   for (CameraTracker* tracker : {&few, &many}) show(*tracker, image, 0);
-  few.features.detect(image, next_id_, 40);
-  many.features.detect(image, next_id_, 1000);
+  few.features->detect(image, next_id_, 40);
+  many.features->detect(image, next_id_, 1000);
   const std::vector<CameraImage> views = {{&many, image, image}, {&few, image, image}};
   EXPECT_EQ(leading_tracker({}), nullptr);
   EXPECT_EQ(leading_tracker(views), &many);

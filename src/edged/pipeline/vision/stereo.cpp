@@ -22,8 +22,8 @@ StereoMatcher matcher_of(const CameraImage& from, const CameraImage& to, const I
                          const StereoConfig& config) {
   const SE3 T_O_from = from.tracker->T_O_C(from.tracker->T_O_B_now(body));
   const SE3 T_O_to = to.tracker->T_O_C(to.tracker->T_O_B_now(body));
-  return {{from.tracker->features.camera(), image_for(to, from)},
-          {to.tracker->features.camera(), image_for(from, to)},
+  return {{from.tracker->features->camera(), image_for(to, from)},
+          {to.tracker->features->camera(), image_for(from, to)},
           T_O_to.inverse() * T_O_from,
           config};
 }
@@ -40,12 +40,11 @@ void match_across_cameras(const CameraImage& from, const CameraImage& to, const 
                           const DepthOf& depth, int most, const StereoConfig& config) {
   if (!can_match(*from.tracker, *to.tracker, config)) return;
   const StereoMatcher matcher = matcher_of(from, to, body, config);
-  FeatureTracker& there = to.tracker->features;
-  for (const Track& track : from.tracker->features.tracks()) {
+  FeatureTracker& there = *to.tracker->features;
+  for (const Track& track : from.tracker->features->tracks()) {
     if (static_cast<int>(there.tracks().size()) >= most) return;
     if (there.find(track.id) != nullptr) continue;
-    if (const auto pixel = matcher.match(track.pixel, depth(*from.tracker, track.id)))
-      there.add_feature(track.id, *pixel);
+    if (const auto pixel = matcher.match(track.pixel, depth(*from.tracker, track.id))) there.add(track.id, *pixel);
   }
 }
 
@@ -57,7 +56,7 @@ void inflate_correlated(std::span<CameraObservations> observations, std::span<co
     for (FeatureObservation& observation : observations[i].features) {
       if (std::ranges::any_of(views, [&](const CameraImage& other) {
             return other.tracker->camera.modality == Modality::Frames && can_match(tracker, *other.tracker, config) &&
-                   other.tracker->features.find(observation.id) != nullptr;
+                   other.tracker->features->find(observation.id) != nullptr;
           }))
         observation.sigma *= kPipelineTuning.correlated_sigma_factor;
     }
@@ -69,14 +68,14 @@ void drop_mismatches(const CameraImage& from, const CameraImage& to, const ImuPr
   if (!can_match(*from.tracker, *to.tracker, config)) return;
   const StereoMatcher matcher = matcher_of(from, to, body, config);
   std::vector<FeatureId> wrong;
-  for (const Track& track : from.tracker->features.tracks()) {
-    const Track* there = to.tracker->features.find(track.id);
+  for (const Track& track : from.tracker->features->tracks()) {
+    const Track* there = to.tracker->features->find(track.id);
     if (there == nullptr) continue;
     if (matcher.epipolar_px(track.point, there->point) >
         kPipelineTuning.followed_epipolar_factor * config.max_epipolar_px)
       wrong.push_back(track.id);
   }
-  to.tracker->features.remove(wrong);
+  to.tracker->features->remove(wrong);
 }
 
 }  // namespace edged

@@ -79,7 +79,7 @@ VisionOutput Vision::process(const VisionInput& input) {
 
 void Vision::correct(const VisionCorrection& correction, const ImuPropagator& body) {
   const Timestamp t = body.now().t;
-  for (CameraTracker& tracker : trackers_) tracker.features.remove(correction.outliers);
+  for (CameraTracker& tracker : trackers_) tracker.features->remove(correction.outliers);
   landmarks_ = correction.landmarks;
   provisional_ = correction.provisional;
   if (!landmarks_) return;
@@ -100,7 +100,7 @@ std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& outp
   for (std::size_t i = 0; i < trackers_.size(); ++i) {
     const CameraTracker& tracker = trackers_[i];
     CameraStep camera{.name = tracker.camera.name, .modality = tracker.camera.modality};
-    camera.tracks = tracker.features.tracks();
+    camera.tracks = tracker.features->tracks();
     camera.survival_rate = tracker.survival_rate();
     if (i < event_views_.size()) {
       camera.image = output.event_images[i].frame;
@@ -147,7 +147,7 @@ std::vector<SeenDepth> Vision::landmarks_seen_by(const CameraTracker& viewer, co
   const SE3 T_C_O = viewer.T_O_C(viewer.T_O_B_now(body)).inverse();
   for (const CameraTracker& tracker : trackers_) {
     const SE3 T_C_last = T_C_O * tracker.T_O_C(tracker.T_O_Blast);
-    for (const Track& track : tracker.features.tracks()) {
+    for (const Track& track : tracker.features->tracks()) {
       const std::optional<double> depth = landmark_depth(tracker, track.id);
       if (!depth) continue;
       const Eigen::Vector3d p_C = T_C_last * (*depth * track.point.homogeneous());
@@ -224,7 +224,7 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const CameraImage> 
   // Only the camera with most tracks: features on event frames drift and end earlier, and would cause keyframes that
   // good frames do not need.
   const Eigen::Matrix3d R_Ckf_C = leader->since_keyframe(leader->T_O_B_now(input.body));
-  since.tracks = leader->features.since_keyframe(R_Ckf_C);
+  since.tracks = leader->features->since_keyframe(R_Ckf_C);
   since.rotation_rad = so3::log(Eigen::Quaterniond(R_Ckf_C)).norm();
   return keyframe_due(since, config_.keyframes);
 }
@@ -240,7 +240,7 @@ void Vision::mark_keyframe(const VisionInput& input, std::span<CameraImage> view
   }
   for (auto view = views.begin(); view != views.end(); ++view) {
     for (auto other = views.begin(); other != view; ++other) match_across(*other, *view, input.body);
-    view->tracker->features.detect(view->detect, next_feature_, features_wanted(*view->tracker, input.body.now().t));
+    view->tracker->features->detect(view->detect, next_feature_, features_wanted(*view->tracker, input.body.now().t));
     for (auto other = views.begin(); other != view; ++other) match_across(*view, *other, input.body);
   }
   for (const CameraImage& view : views) view.tracker->mark_keyframe(view.tracker->T_O_B_now(input.body));
@@ -264,7 +264,7 @@ void Vision::expect_events(std::span<CameraImage> views, const ImuPropagator& bo
     if (body.started())
       T_later_now = tracker.T_O_C(body.extrapolate(tracker.camera.time_offset + kSoon)).inverse() *
                     tracker.T_O_C(tracker.T_O_B_now(body));
-    view.as_events = expected_event_frame(view.track, tracker.features.camera(), T_later_now, scene_depth);
+    view.as_events = expected_event_frame(view.track, tracker.features->camera(), T_later_now, scene_depth);
   }
 }
 
@@ -319,7 +319,7 @@ bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_i
 std::vector<TrackedImage> Vision::images_of(std::span<const CameraImage> views) const {
   std::vector<TrackedImage> images;
   for (const CameraTracker& tracker : trackers_) {
-    const FeatureTracker& features = tracker.features;
+    const FeatureTracker& features = *tracker.features;
     images.push_back({tracker.camera.name, features.camera(), {}, features.tracks(), tracker.survival_rate()});
     const auto view = std::ranges::find(views, &tracker, &CameraImage::tracker);
     if (view != views.end()) images.back().image = view->track;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "edged/frontend/tracker.hpp"
+#include "edged/frontend/trackers/klt_tracker.hpp"
 #include "edged/measurement.hpp"
 #include "edged/rig.hpp"
 #include "edged/state.hpp"
@@ -61,7 +61,7 @@ class VisualTurns {
 
   Modality modality_;
   int octaves_;  ///< by which images of events are binned
-  FeatureTracker tracker_;
+  KltTracker tracker_;
   FeatureId next_id_ = 1;
   std::deque<View> views_;  ///< the newest ones
   std::vector<Turn> turns_;

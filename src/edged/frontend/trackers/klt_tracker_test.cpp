@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/frontend/tracker.hpp"
+#include "edged/frontend/trackers/klt_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ cv::Mat noisy(const cv::Mat& image, double sigma, cv::RNG& random) {
 
 class Tracking : public testing::Test {
  protected:
-  FeatureTracker start(const SE3& T_W_C, const TrackerConfig& config = {}) {
-    FeatureTracker tracker("left", scene_.camera(), config);
+  KltTracker start(const SE3& T_W_C, const TrackerConfig& config = {}) {
+    KltTracker tracker("left", scene_.camera(), config);
     const cv::Mat image = scene_.image(T_W_C);
     tracker.track(image, at(0), std::nullopt);
     tracker.detect(image, next_id_);
@@ -51,7 +51,7 @@ class Tracking : public testing::Test {
 TEST(Tracker, FindsAndFollowsNothingOutsideOfWhatIsUsedOfTheLens) {
   const CameraModel camera = davis_like_pinhole().within(0.25);
   const PlaneScene scene(camera, 2.0);
-  FeatureTracker tracker("left", camera, {});
+  KltTracker tracker("left", camera, {});
   FeatureId next_id = 1;
   const SE3 moved = pose({0.0, 0.03, 0.0}, Eigen::Vector3d::Zero());
   for (int i = 0; i < 2; ++i) {
@@ -66,7 +66,7 @@ TEST(Tracker, FindsAndFollowsNothingOutsideOfWhatIsUsedOfTheLens) {
 
 TEST_F(Tracking, FollowsCornersToATenthOfAPixel) {
   const SE3 T_W_C1 = pose({0.01, -0.01, 0.02}, {0.03, 0.02, 0.02});
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   const auto before = tracker.tracks().size();
   EXPECT_GT(before, 70U);
   const TrackSummary summary = tracker.track(scene_.image(T_W_C1), at(1), std::nullopt);
@@ -77,7 +77,7 @@ TEST_F(Tracking, FollowsCornersToATenthOfAPixel) {
 }
 
 TEST_F(Tracking, DriftsLessThanHalfAPixelOverTwentyImages) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   SE3 T_W_C;
   for (int i = 1; i <= 20; ++i) {
     T_W_C = pose({0.002 * i, -0.003 * i, 0.004 * i}, {0.01 * i, 0.005 * i, 0.01 * i});
@@ -94,7 +94,7 @@ TEST_F(Tracking, AlignedToTheirFirstLooksCornersDriftLessInNoise) {
   double error[2];
   for (const bool enabled : {false, true}) {
     config.reference_patches.enabled = enabled;
-    FeatureTracker tracker = start(SE3(), config);
+    KltTracker tracker = start(SE3(), config);
     SE3 T_W_C;
     for (int i = 1; i <= 30; ++i) {
       const SE3 T_W_Cprev = T_W_C;
@@ -112,12 +112,12 @@ TEST_F(Tracking, PredictedSeedsFollowFortyPixelsWhereTheOldPositionsFail) {
   const SE3 T_W_C1 = pose({0.0, 0.2, 0.0}, {0.0, 0.0, 0.0});  // 40 px
   const cv::Mat image = scene_.image(T_W_C1);
 
-  FeatureTracker unseeded = start(SE3());
+  KltTracker unseeded = start(SE3());
   const double before = static_cast<double>(unseeded.tracks().size());
   unseeded.track(image, at(1), std::nullopt);
   EXPECT_LT(static_cast<double>(unseeded.tracks().size()), 0.4 * before);
 
-  FeatureTracker seeded = start(SE3());
+  KltTracker seeded = start(SE3());
   const SE3 predicted = T_W_C1.inverse() * pose({0.005, 0.005, 0}, {0, 0, 0});  // 1.4 px off
   const TrackSummary summary = seeded.track(image, at(1), TrackPrediction{predicted, 2.0, {}});
   EXPECT_FALSE(summary.prediction_failed);
@@ -128,14 +128,14 @@ TEST_F(Tracking, PredictedSeedsFollowFortyPixelsWhereTheOldPositionsFail) {
 TEST_F(Tracking, UsesTheDepthOfEachCornerAndReportsTheInnovation) {
   const SE3 T_W_C1 = pose({0, 0, 0}, {0.2, 0, 0});  // 20 px at the true depth of 2 m, 10 px at 4 m
   const cv::Mat image = scene_.image(T_W_C1);
-  FeatureTracker own = start(SE3());
+  KltTracker own = start(SE3());
   const auto depth = [](FeatureId) { return std::optional<double>(2.0); };
   EXPECT_LT(own.track(image, at(1), TrackPrediction{T_W_C1.inverse(), 4.0, depth}).median_innovation_px.norm(), 0.1);
-  FeatureTracker common = start(SE3());
+  KltTracker common = start(SE3());
   const TrackSummary summary = common.track(image, at(1), TrackPrediction{T_W_C1.inverse(), 4.0, {}});
   EXPECT_NEAR(summary.median_innovation_px.x(), -10.0, 0.3);
   EXPECT_NEAR(summary.median_innovation_px.y(), 0.0, 0.1);
-  FeatureTracker corrected = start(SE3());
+  KltTracker corrected = start(SE3());
   const TrackPrediction prediction{T_W_C1.inverse(), 4.0, {}, {-10.0, 0.0}};
   EXPECT_LT(corrected.track(image, at(1), prediction).median_innovation_px.norm(), 0.3);
 }
@@ -143,7 +143,7 @@ TEST_F(Tracking, UsesTheDepthOfEachCornerAndReportsTheInnovation) {
 TEST_F(Tracking, FallsBackToTheOldPositionsWhenThePredictionIsWrong) {
   const SE3 T_W_C1 = pose({0, 0, 0}, {0.01, 0, 0});
   for (const SE3& wrong : {pose({0.0, 0.35, 0.3}, {0, 0, 0}), pose({0, 3.1, 0}, {0, 0, 0})}) {
-    FeatureTracker tracker = start(SE3());
+    KltTracker tracker = start(SE3());
     const TrackSummary summary = tracker.track(scene_.image(T_W_C1), at(1), TrackPrediction{wrong, 2.0, {}});
     EXPECT_TRUE(summary.prediction_failed);
     EXPECT_GT(summary.tracked, 0.9 * summary.before);
@@ -156,7 +156,7 @@ TEST_F(Tracking, SurvivesAGainChangeAndNoise) {
   cv::Mat image;
   cv::RNG random(5);
   scene_.image(T_W_C1).convertTo(image, CV_8U, 0.95, 3);
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   const TrackSummary summary = tracker.track(noisy(image, 4.0, random), at(1), std::nullopt);
   EXPECT_GT(summary.tracked, 0.85 * summary.before);
   EXPECT_LT(mean_error(tracker, SE3(), T_W_C1), 0.25);
@@ -165,17 +165,17 @@ TEST_F(Tracking, SurvivesAGainChangeAndNoise) {
 TEST_F(Tracking, LosesEverythingInAnUnrelatedOrFlatImage) {
   TrackerConfig strict;  // the default leaves it to outlier rejection
   strict.min_correlation = 0.7;
-  FeatureTracker tracker = start(SE3(), strict);
+  KltTracker tracker = start(SE3(), strict);
   const TrackSummary summary = tracker.track(random_texture(240, 180, 99), at(1), std::nullopt);
   EXPECT_LT(summary.tracked, 0.1 * summary.before);
-  FeatureTracker flat = start(SE3());
+  KltTracker flat = start(SE3());
   EXPECT_EQ(flat.track(cv::Mat(180, 240, CV_8UC1, cv::Scalar(90)), at(1), std::nullopt).tracked, 0);
   EXPECT_TRUE(flat.needs_detection());
   EXPECT_EQ(flat.track(scene_.image(SE3()), at(2), std::nullopt).tracked, 0);
 }
 
 TEST_F(Tracking, AnEmptyImageEndsAllTracksAndTheNextOneStartsAnew) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   EXPECT_EQ(tracker.track(cv::Mat(), at(1), std::nullopt).tracked, 0);
   EXPECT_TRUE(tracker.tracks().empty());
   EXPECT_EQ(tracker.detect(cv::Mat(), next_id_), 0);
@@ -184,14 +184,14 @@ TEST_F(Tracking, AnEmptyImageEndsAllTracksAndTheNextOneStartsAnew) {
 }
 
 TEST_F(Tracking, RefusesAnImageThatDoesNotFitTheCamera) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   EXPECT_THROW(tracker.track(random_texture(346, 260), at(1), std::nullopt), InputError);
   EXPECT_THROW(tracker.track(cv::Mat(180, 240, CV_8UC3, cv::Scalar()), at(1), std::nullopt), InputError);
 }
 
 TEST_F(Tracking, WorksOnTinyImages) {
   for (const int side : {2, 9, 24}) {
-    FeatureTracker tracker("tiny", CameraModel(side, side, 20, 20, side / 2.0, side / 2.0), {});
+    KltTracker tracker("tiny", CameraModel(side, side, 20, 20, side / 2.0, side / 2.0), {});
     for (int i = 0; i < 3; ++i) {
       tracker.track(random_texture(side, side), at(i), std::nullopt);
       tracker.detect(random_texture(side, side), next_id_);
@@ -200,7 +200,7 @@ TEST_F(Tracking, WorksOnTinyImages) {
 }
 
 TEST_F(Tracking, RefillsOnlyFreeCellsWithFreshIds) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   const FeatureId first_new = next_id_;
   const SE3 T_W_C1 = pose({0, 0.2, 0}, {0, 0, 0});
   const cv::Mat image = scene_.image(T_W_C1);
@@ -225,7 +225,7 @@ TEST_F(Tracking, ObservationsLieOnTheUnitPlaneOfTheDistortedCamera) {
   const CameraModel camera(240, 180, 200, 200, 119.5, 89.5, DistortionModel::RadTan, {-0.35, 0.12, 0, 0, 0});
   TrackerConfig config;
   config.sigma_px = 1.5;
-  FeatureTracker tracker("left", camera, config);
+  KltTracker tracker("left", camera, config);
   const cv::Mat image = random_texture(240, 180);
   tracker.track(image, at(0), std::nullopt);
   tracker.detect(image, next_id_);
@@ -246,7 +246,7 @@ TEST_F(Tracking, RejectsTracksThatMoveOnTheirOwnAndKeepsTheOthers) {
   const cv::Mat slid = scene_.image(pose({0, 0, 0.02}, {0.1, 0.06, 0}));  // 6 px across the epipolar lines
   const cv::Rect thing(150, 40, 70, 70);
   slid(thing).copyTo(image(thing));
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   tracker.track(image, at(1), std::nullopt);
   std::map<FeatureId, bool> right;
   for (const Track& track : tracker.tracks()) {
@@ -263,7 +263,7 @@ TEST_F(Tracking, RejectsTracksThatMoveOnTheirOwnAndKeepsTheOthers) {
 }
 
 TEST_F(Tracking, PureRotationKillsNoTracksAndHasNoParallax) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   SE3 T_W_C;
   for (int i = 1; i <= 5; ++i) {
     T_W_C = pose({0.01 * i, 0.02 * i, 0.01 * i}, {0, 0, 0});
@@ -281,7 +281,7 @@ TEST_F(Tracking, PureRotationKillsNoTracksAndHasNoParallax) {
 }
 
 TEST_F(Tracking, RemovesTracksOnRequestAndMergesTheYoungerOfTwoThatMeet) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   const std::vector<FeatureId> ids{tracker.tracks()[3].id, 123456};
   const auto before = tracker.tracks().size();
   tracker.remove(ids);
@@ -289,7 +289,7 @@ TEST_F(Tracking, RemovesTracksOnRequestAndMergesTheYoungerOfTwoThatMeet) {
 
   TrackerConfig config;
   config.merge_px = 30.0;  // wider than the grid: neighbours count as the same feature
-  FeatureTracker wide = start(SE3(), config);
+  KltTracker wide = start(SE3(), config);
   const FeatureId oldest = wide.tracks().front().id;
   const TrackSummary summary = wide.track(scene_.image(SE3()), at(1), std::nullopt);
   EXPECT_GT(summary.before - summary.tracked, 20);
@@ -299,7 +299,7 @@ TEST_F(Tracking, RemovesTracksOnRequestAndMergesTheYoungerOfTwoThatMeet) {
 TEST_F(Tracking, GivesTheSameBitsTwice) {
   const auto run = [&] {
     next_id_ = 1;
-    FeatureTracker tracker = start(SE3());
+    KltTracker tracker = start(SE3());
     std::vector<double> all;
     for (int i = 1; i <= 10; ++i) {
       const SE3 T_W_C = pose({0.01 * i, 0.02 * i, 0}, {0.03 * i, 0, 0.02 * i});
@@ -319,7 +319,7 @@ TEST_F(Tracking, GivesTheSameBitsTwice) {
 TEST(TrackerConfig, RefusesAnEvenWindow) {
   TrackerConfig config;
   config.klt.window_px = 20;
-  EXPECT_THROW(FeatureTracker("left", davis_like_pinhole(), config), InputError);
+  EXPECT_THROW(KltTracker("left", davis_like_pinhole(), config), InputError);
 }
 
 TEST(Tracker, FindsAndFollowsNothingUnderTheMask) {
@@ -328,7 +328,7 @@ TEST(Tracker, FindsAndFollowsNothingUnderTheMask) {
   std::fill(used.begin(), used.begin() + static_cast<std::ptrdiff_t>(used.size() / 2), std::uint8_t{0});
   const CameraModel camera = whole.masked(used);
   const PlaneScene scene(camera, 2.0);
-  FeatureTracker tracker("left", camera, {});
+  KltTracker tracker("left", camera, {});
   FeatureId next_id = 1;
   for (int i = 0; i < 2; ++i) {
     const TrackSummary summary =
@@ -341,16 +341,16 @@ TEST(Tracker, FindsAndFollowsNothingUnderTheMask) {
 }
 
 TEST_F(Tracking, FollowsAFeatureOfAnotherCameraUnderItsId) {
-  FeatureTracker tracker = start(SE3());
+  KltTracker tracker = start(SE3());
   const std::size_t before = tracker.tracks().size();
   const Track own = tracker.tracks()[before / 2];
   const FeatureId other = 100'000;
-  tracker.add_feature(other, own.pixel + Eigen::Vector2d(0.4, 0.0));
+  tracker.add(other, own.pixel + Eigen::Vector2d(0.4, 0.0));
   ASSERT_EQ(tracker.tracks().size(), before) << "it takes the place of the track there";
   EXPECT_EQ(tracker.find(own.id), nullptr);
-  tracker.add_feature(own.id, Eigen::Vector2d(5.0, 5.0));
+  tracker.add(own.id, Eigen::Vector2d(5.0, 5.0));
   EXPECT_TRUE(std::ranges::is_sorted(tracker.tracks(), {}, &Track::id));
-  EXPECT_THROW(tracker.add_feature(other, {50.0, 50.0}), CheckError);
+  EXPECT_THROW(tracker.add(other, {50.0, 50.0}), CheckError);
   tracker.mark_keyframe();
   const SE3 moved = pose({0.01, -0.01, 0.02}, {0.03, 0.02, 0.02});
   tracker.track(scene_.image(moved), at(1), std::nullopt);
