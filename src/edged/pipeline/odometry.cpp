@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edged/odometry.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "edged/camera/output_frame.hpp"
-#include "edged/core/check.hpp"
 #include "edged/pipeline/input/measurement_validator.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
 #include "edged/pipeline/localization/localization.hpp"
 #include "edged/pipeline/localization/state_prediction.hpp"
 #include "edged/pipeline/mode.hpp"
-#include "edged/pipeline/vision/vision.hpp"
+#include "edged/pipeline/packet_step.hpp"
+#include "edged/pipeline/vision/image_vision.hpp"
 
 namespace edged {
 
@@ -26,7 +27,7 @@ struct Odometry::Impl {
         }),
         packetizer(new_packetizer({})),
         localization(used, noise, config, timings, feed.keeps_measurements),
-        vision(without_offsets(used), config, feed.inference, timings) {}
+        vision(std::make_unique<ImageVision>(without_offsets(used), config, feed.inference, timings)) {}
 
   std::optional<Packet> next_packet();
   Step process(Packet packet);
@@ -40,7 +41,7 @@ struct Odometry::Impl {
   bool finished = false;
   StageTimings timings;
   Localization localization;
-  Vision vision;
+  std::unique_ptr<Vision> vision;
 };
 
 std::optional<Packet> Odometry::Impl::next_packet() {
@@ -50,7 +51,7 @@ std::optional<Packet> Odometry::Impl::next_packet() {
     if (begins_epoch) {
       packetizer = new_packetizer(packetizer.counters());
       localization.begin_epoch();
-      vision.begin_epoch();
+      vision->begin_epoch();
       packetizer.add(*std::exchange(begins_epoch, std::nullopt));
     } else if (std::optional<MeasurementValidator::Item> item = validator.next(); item && item->begins_epoch) {
       packetizer.finish();
@@ -66,17 +67,11 @@ std::optional<Packet> Odometry::Impl::next_packet() {
   }
 }
 
-/// The paper's data flow, packet by packet.
 Step Odometry::Impl::process(Packet packet) {
-  EDGED_CHECK(packet.imu.size() >= 2, "packet at {} ns with {} IMU samples", to_ns(packet.t), packet.imu.size());
   const auto timer = timings.measure("process");
-  Preintegration motion = localization.predict(packet.imu);
-  const VisionOutput seen = vision.process({packet, localization.body(), motion.gyro_trusted()});
-  LocalizationOutput localized = localization.process(std::move(motion), seen, std::move(packet.external));
-  vision.correct(localized.correction, localization.body());
-  localized.step.cameras = vision.describe(std::move(packet), seen);
-  localized.step.rig = rig_for_poses(given, localization.rig());
-  return std::move(localized.step);
+  Step step = process_packet(std::move(packet), localization, *vision);
+  step.rig = rig_for_poses(given, localization.rig());
+  return step;
 }
 
 Odometry::Odometry(const Rig& rig, const ImuNoise& imu_noise, Mode mode, const OdometryConfig& config,

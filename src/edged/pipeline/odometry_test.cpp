@@ -9,10 +9,10 @@
 
 #include "edged/core/check.hpp"
 #include "edged/pipeline/input/packetizer.hpp"
-#include "edged/pipeline/localization/localization.hpp"
 #include "edged/pipeline/mode.hpp"
 #include "edged/pipeline/odometry_test_support.hpp"
-#include "edged/pipeline/vision/vision.hpp"
+#include "edged/pipeline/packet_step.hpp"
+#include "edged/pipeline/vision/image_vision.hpp"
 
 namespace edged {
 namespace {
@@ -26,17 +26,11 @@ TEST(Odometry, GivesTheBitsOfItsPartsInEveryMode) {
     Packetizer packetizer(used, {});
     StageTimings timings;
     Localization localization(used, {}, {}, timings);
-    Vision vision(without_offsets(used), {}, Inference::Synchronous, timings);
+    ImageVision vision(without_offsets(used), {}, Inference::Synchronous, timings);
     Numbers steps;
     const auto process = [&] {
-      while (auto packet = packetizer.next()) {
-        Preintegration motion = localization.predict(packet->imu);
-        const VisionOutput seen = vision.process({*packet, localization.body(), motion.gyro_trusted()});
-        LocalizationOutput localized = localization.process(std::move(motion), seen);
-        vision.correct(localized.correction, localization.body());
-        localized.step.cameras = vision.describe(std::move(*packet), seen);
-        steps.push_back(numbers_of(localized.step));
-      }
+      while (auto packet = packetizer.next())
+        steps.push_back(numbers_of(process_packet(std::move(*packet), localization, vision)));
     };
     for (const Measurement& m : all) packetizer.add(m), process();
     packetizer.finish();

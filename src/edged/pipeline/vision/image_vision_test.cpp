@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
 // Vision without an estimator: images of a plane, moved by a known motion.
-#include "edged/pipeline/vision/vision.hpp"
+#include "edged/pipeline/vision/image_vision.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ class PlaneVision : public testing::Test {
 };
 
 TEST_F(PlaneVision, ObservesFeaturesWhereTheMotionPutsThem) {
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   const VisionOutput first = show(vision, 0);
   EXPECT_TRUE(first.keyframe);
   const std::vector<FeatureObservation> before = first.observations.front().features;
@@ -88,7 +88,7 @@ TEST_F(PlaneVision, ObservesFeaturesWhereTheMotionPutsThem) {
 TEST_F(PlaneVision, TakesTheSceneDepthFromLandmarksAndGivesItUpWithTheEstimate) {
   OdometryConfig config;
   config.depth.constant_m = 5.0;
-  Vision vision(rig_, config, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, config, Inference::Synchronous, timings_);
   VisionOutput output = show(vision, 0);
   EXPECT_EQ(output.scene_depth, 5.0);
   for (int image = 1; image <= 10; ++image) {
@@ -104,7 +104,7 @@ TEST_F(PlaneVision, TakesTheSceneDepthFromLandmarksAndGivesItUpWithTheEstimate) 
 }
 
 TEST_F(PlaneVision, EndsTracksThatLocalizationFindsWrong) {
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   const VisionOutput first = show(vision, 0);
   const FeatureId wrong = first.images.front().tracks.front().id;
   vision.correct({{wrong}, std::nullopt}, body_);
@@ -113,7 +113,7 @@ TEST_F(PlaneVision, EndsTracksThatLocalizationFindsWrong) {
 }
 
 TEST_F(PlaneVision, ObservesNothingWithoutAnImageAndKeepsItsTracks) {
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   const std::size_t tracks = show(vision, 0).images.front().tracks.size();
   const VisionOutput output = process(vision, packet(1), 1);
   EXPECT_FALSE(output.keyframe);
@@ -123,7 +123,7 @@ TEST_F(PlaneVision, ObservesNothingWithoutAnImageAndKeepsItsTracks) {
 }
 
 TEST_F(PlaneVision, BeginsANewTimeWithNewFeatures) {
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   std::set<FeatureId> before;
   const VisionOutput first = show(vision, 0);
   for (const Track& track : first.images.front().tracks) before.insert(track.id);
@@ -135,7 +135,7 @@ TEST_F(PlaneVision, BeginsANewTimeWithNewFeatures) {
 
 TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
   rig_.cameras = {{"dvs", Modality::Events, scene_.camera(), SE3(), Duration(0)}};
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   Packet few = packet(0);
   few.events.push_back({"dvs", {{few.t, 10, 10, true}}, 1, 1, 25.0});
   const VisionOutput output = process(vision, few, 0);
@@ -150,7 +150,7 @@ TEST_F(PlaneVision, RendersNoEventFrameOfTooFewEvents) {
 
 TEST_F(PlaneVision, ObservesNothingInAnEventFrameOfNoise) {
   rig_.cameras = {{"dvs", Modality::Events, scene_.camera(), SE3(), Duration(0)}};
-  Vision vision(rig_, {}, Inference::Synchronous, timings_);
+  ImageVision vision(rig_, {}, Inference::Synchronous, timings_);
   const auto width = static_cast<unsigned>(scene_.camera().width()),
              height = static_cast<unsigned>(scene_.camera().height());
   const std::size_t count = width * height / 4U;
@@ -179,7 +179,7 @@ TEST_F(PlaneVision, GivesTheFeaturesOfTwoCamerasOneIdEach) {
   for (const bool enabled : {true, false}) {
     OdometryConfig config;
     config.stereo.enabled = enabled;
-    Vision vision(rig_, config, Inference::Synchronous, timings_);
+    ImageVision vision(rig_, config, Inference::Synchronous, timings_);
     std::size_t shared = 0, of_one = 0;
     for (int image = 0; image < 6; ++image) {
       Packet both = packet(image);

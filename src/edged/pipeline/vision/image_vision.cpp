@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-#include "edged/pipeline/vision/vision.hpp"
+#include "edged/pipeline/vision/image_vision.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -19,7 +19,7 @@ int part_of_budget(int features, std::size_t cameras) {
 
 }  // namespace
 
-Vision::Vision(const Rig& cameras, const OdometryConfig& config, Inference inference, StageTimings& timings)
+ImageVision::ImageVision(const Rig& cameras, const OdometryConfig& config, Inference inference, StageTimings& timings)
     : config_(config), inference_(inference), rig_(cameras), timings_(&timings), depth_(fresh_depth()) {
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
@@ -31,7 +31,7 @@ Vision::Vision(const Rig& cameras, const OdometryConfig& config, Inference infer
   make_trackers();
 }
 
-void Vision::make_trackers() {
+void ImageVision::make_trackers() {
   trackers_.clear();
   for (const RigCamera& camera : rig_.cameras) {
     if (camera.modality == Modality::Events) {
@@ -45,7 +45,7 @@ void Vision::make_trackers() {
   }
 }
 
-void Vision::begin_epoch() {
+void ImageVision::begin_epoch() {
   make_trackers();
   depth_ = fresh_depth();
   last_keyframe_.reset();
@@ -55,7 +55,7 @@ void Vision::begin_epoch() {
   provisional_ = true;
 }
 
-VisionOutput Vision::process(const VisionInput& input) {
+VisionOutput ImageVision::process(const VisionInput& input) {
   const Packet& packet = input.packet;
   gyro_saturated_ |= !input.gyro_trusted;
   VisionOutput output;
@@ -77,7 +77,7 @@ VisionOutput Vision::process(const VisionInput& input) {
   return output;
 }
 
-void Vision::correct(const VisionCorrection& correction, const ImuPropagator& body) {
+void ImageVision::correct(const VisionCorrection& correction, const ImuPropagator& body) {
   const Timestamp t = body.now().t;
   for (CameraTracker& tracker : trackers_) tracker.features->remove(correction.outliers);
   landmarks_ = correction.landmarks;
@@ -94,7 +94,7 @@ void Vision::correct(const VisionCorrection& correction, const ImuPropagator& bo
   if (correction.ended) landmarks_.reset();
 }
 
-std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& output) const {
+std::vector<CameraStep> ImageVision::describe(Packet packet, const VisionOutput& output) const {
   std::vector<CameraStep> cameras;
   cameras.reserve(trackers_.size());  // OpenCV's images may throw when moved: a reallocation would copy the events
   for (std::size_t i = 0; i < trackers_.size(); ++i) {
@@ -115,7 +115,7 @@ std::vector<CameraStep> Vision::describe(Packet packet, const VisionOutput& outp
   return cameras;
 }
 
-double Vision::measure_depth(const Packet& packet) {
+double ImageVision::measure_depth(const Packet& packet) {
   const auto timer = timings_->measure("depth");
   if (!packet.events.empty()) {
     const PacketEvents& first = packet.events.front();
@@ -124,7 +124,7 @@ double Vision::measure_depth(const Packet& packet) {
   return depth_.at(packet.t);
 }
 
-std::vector<EventImage> Vision::render(const VisionInput& input, double scene_depth) {
+std::vector<EventImage> ImageVision::render(const VisionInput& input, double scene_depth) {
   std::vector<EventImage> images(event_views_.size());
   // The motion of an event frame's events is compensated by the gyro: in a gap, features on it would measure what was
   // assumed, and frames are better without them.
@@ -142,7 +142,7 @@ std::vector<EventImage> Vision::render(const VisionInput& input, double scene_de
 }
 
 /// The landmarks of all cameras, in that one now.
-std::vector<SeenDepth> Vision::landmarks_seen_by(const CameraTracker& viewer, const ImuPropagator& body) const {
+std::vector<SeenDepth> ImageVision::landmarks_seen_by(const CameraTracker& viewer, const ImuPropagator& body) const {
   std::vector<SeenDepth> seen;
   const SE3 T_C_O = viewer.T_O_C(viewer.T_O_B_now(body)).inverse();
   for (const CameraTracker& tracker : trackers_) {
@@ -158,7 +158,8 @@ std::vector<SeenDepth> Vision::landmarks_seen_by(const CameraTracker& viewer, co
 }
 
 /// One depth per event in the same order; nothing if one depth serves for the whole scene, or no other is known.
-std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const ImuPropagator& body, double scene_depth) const {
+std::optional<DepthGrid> ImageVision::event_depths(std::size_t camera, const ImuPropagator& body,
+                                                   double scene_depth) const {
   if (config_.event_frame.depth != EventDepth::Landmarks || !landmarks_) return std::nullopt;
   const CameraModel& ideal = event_views_[camera].ideal();
   std::vector<DepthSample> samples;
@@ -170,7 +171,7 @@ std::optional<DepthGrid> Vision::event_depths(std::size_t camera, const ImuPropa
 }
 
 /// The cameras with an image in the packet.
-std::vector<CameraImage> Vision::views_of(const Packet& packet, std::span<const EventImage> event_images) {
+std::vector<CameraImage> ImageVision::views_of(const Packet& packet, std::span<const EventImage> event_images) {
   std::vector<CameraImage> views;
   for (std::size_t i = 0; i < event_images.size(); ++i) {
     const EventImage& image = event_images[i];
@@ -187,7 +188,7 @@ std::vector<CameraImage> Vision::views_of(const Packet& packet, std::span<const 
   return views;
 }
 
-void Vision::track(const CameraImage& view, const VisionInput& input, double scene_depth) {
+void ImageVision::track(const CameraImage& view, const VisionInput& input, double scene_depth) {
   CameraTracker& tracker = *view.tracker;
   const auto timer = timings_->measure(tracker.camera.modality == Modality::Events ? "track_events" : "track_frames");
   TrackPrediction prediction;
@@ -201,7 +202,7 @@ void Vision::track(const CameraImage& view, const VisionInput& input, double sce
                 tracker.camera.modality == Modality::Frames && landmarks_ ? input.packet.lamp() : std::nullopt);
 }
 
-void Vision::reject(std::span<const CameraImage> views, const ImuPropagator& body) {
+void ImageVision::reject(std::span<const CameraImage> views, const ImuPropagator& body) {
   const auto timer = timings_->measure("reject");
   for (auto view = views.begin(); view != views.end(); ++view) {
     for (auto other = views.begin(); other != view; ++other) drop_mismatches(*other, *view, body, config_.stereo);
@@ -209,7 +210,7 @@ void Vision::reject(std::span<const CameraImage> views, const ImuPropagator& bod
   for (const CameraImage& view : views) view.tracker->reject(view.tracker->T_O_B_now(body), !gyro_saturated_);
 }
 
-bool Vision::is_keyframe(const VisionInput& input, std::span<const CameraImage> views) const {
+bool ImageVision::is_keyframe(const VisionInput& input, std::span<const CameraImage> views) const {
   const Packet& packet = input.packet;
   const CameraTracker* leader = leading_tracker(views);
   if (leader == nullptr) return false;
@@ -229,7 +230,7 @@ bool Vision::is_keyframe(const VisionInput& input, std::span<const CameraImage> 
   return keyframe_due(since, config_.keyframes);
 }
 
-void Vision::mark_keyframe(const VisionInput& input, std::span<CameraImage> views, double scene_depth) {
+void ImageVision::mark_keyframe(const VisionInput& input, std::span<CameraImage> views, double scene_depth) {
   const auto timer = timings_->measure("detect");
   expect_events(views, input.body, scene_depth);
   for (const CameraImage& to : views) {
@@ -250,7 +251,7 @@ void Vision::mark_keyframe(const VisionInput& input, std::span<CameraImage> view
 
 /// Frames as the event cameras that can share features with them would see their scene. What these cameras follow
 /// already comes first: features of frames are more accurate than those that an event frame would get of its own.
-void Vision::expect_events(std::span<CameraImage> views, const ImuPropagator& body, double scene_depth) const {
+void ImageVision::expect_events(std::span<CameraImage> views, const ImuPropagator& body, double scene_depth) const {
   constexpr Duration kSoon = std::chrono::milliseconds(5);
   for (CameraImage& view : views) {
     const CameraTracker& tracker = *view.tracker;
@@ -268,37 +269,37 @@ void Vision::expect_events(std::span<CameraImage> views, const ImuPropagator& bo
   }
 }
 
-void Vision::match_across(const CameraImage& from, const CameraImage& to, const ImuPropagator& body) {
+void ImageVision::match_across(const CameraImage& from, const CameraImage& to, const ImuPropagator& body) {
   const auto depth = [this](const CameraTracker& tracker, FeatureId id) { return landmark_depth(tracker, id); };
   match_across_cameras(from, to, body, depth, features_wanted(*to.tracker, body.now().t), config_.stereo);
 }
 
-std::optional<double> Vision::landmark_depth(const CameraTracker& tracker, FeatureId id) const {
+std::optional<double> ImageVision::landmark_depth(const CameraTracker& tracker, FeatureId id) const {
   if (!landmarks_) return std::nullopt;
   const auto& of_camera = landmarks_->at(static_cast<std::size_t>(&tracker - trackers_.data()));
   const auto landmark = of_camera.find(id);
   return landmark == of_camera.end() ? std::nullopt : std::optional(landmark->second);
 }
 
-double Vision::effective_frame_tracks() const {
+double ImageVision::effective_frame_tracks() const {
   double effective_tracks = 0.0;
   for (std::size_t i = event_views_.size(); i < trackers_.size(); ++i)
     effective_tracks += trackers_[i].effective_tracks();
   return effective_tracks;
 }
 
-bool Vision::frames_available(Timestamp t) const {
+bool ImageVision::frames_available(Timestamp t) const {
   return is_fused() && last_frame_ && t - *last_frame_ < kPipelineTuning.frames_missing_after;
 }
 
 /// Whether frames have enough features for event frames to keep few.
-bool Vision::frames_sufficient(Timestamp t) const {
+bool ImageVision::frames_sufficient(Timestamp t) const {
   return frames_available(t) && effective_frame_tracks() >= config_.health.min_event_features;
 }
 
 /// Frames give more accurate observations than events, if they show the feature: in good light a few features on the
 /// event frame are enough; in the dark, in glare and without frames it keeps all.
-int Vision::features_wanted(const CameraTracker& tracker, Timestamp t) const {
+int ImageVision::features_wanted(const CameraTracker& tracker, Timestamp t) const {
   if (tracker.camera.modality == Modality::Frames)
     return part_of_budget(config_.frame_tracker.detector.max_features, low_light_.size());
   const int all = config_.event_tracker.detector.max_features;
@@ -307,7 +308,7 @@ int Vision::features_wanted(const CameraTracker& tracker, Timestamp t) const {
                         event_views_.size());
 }
 
-bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_images) {
+bool ImageVision::is_static(const Packet& packet, std::span<const EventImage> event_images) {
   bool all = !event_views_.empty();
   for (std::size_t i = 0; i < event_views_.size(); ++i) {
     const bool few = event_views_[i].is_static(packet.events[i], packet.t);
@@ -316,7 +317,7 @@ bool Vision::is_static(const Packet& packet, std::span<const EventImage> event_i
   return all;
 }
 
-std::vector<TrackedImage> Vision::images_of(std::span<const CameraImage> views) const {
+std::vector<TrackedImage> ImageVision::images_of(std::span<const CameraImage> views) const {
   std::vector<TrackedImage> images;
   for (const CameraTracker& tracker : trackers_) {
     const FeatureTracker& features = *tracker.features;
