@@ -85,5 +85,21 @@ TEST(MapFilter, ClosesALoopByPositionWhereDriftIsLoosened) {
   EXPECT_NEAR(half_way.translation().x() - Ring().filter().keyframes()[Ring::kSteps / 2].translation().x(), -2.0, 0.7);
 }
 
+TEST(MapFilter, InflatesPositionsAndHeadingsButNoTilt) {
+  MapFilter filter{MapFilterConfig()};
+  filter.restart(SE3(), SE3(), Timestamp{}, 0.0, 0.0);
+  filter.add_keyframe(SE3(), SE3(), Timestamp{});
+  const SE3 rolled(so3::exp({0.5, 0.0, 0.0}), Eigen::Vector3d::Zero());
+  filter.predict(SE3(), rolled, timestamp_from_seconds(1.0), {});
+  filter.inflate(std::array{1e-4}, 4e-4, 0.25);
+  Eigen::Matrix3d heading = Eigen::Matrix3d::Zero();
+  heading(2, 2) = 1e-4;
+  const Eigen::Matrix3d R = rolled.R();
+  EXPECT_TRUE((filter.covariance().topLeftCorner<3, 3>()).isApprox(4e-4 * Eigen::Matrix3d::Identity(), 1e-9));
+  EXPECT_TRUE((R * filter.covariance().bottomRightCorner<3, 3>() * R.transpose()).isApprox(heading, 1e-9));
+  EXPECT_NEAR(filter.keyframe_covariance()(5, 5), 2.5e-5, 1e-12);
+  EXPECT_NEAR(filter.keyframe_covariance()(4, 4), 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace edged

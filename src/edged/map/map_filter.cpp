@@ -319,12 +319,21 @@ MapFilter::LinearizedPose MapFilter::linearise(std::size_t keyframe, const SE3& 
 }
 
 /// The errors of a random walk at two times have the variance of the earlier one in common.
-void MapFilter::inflate(std::span<const double> keyframes, double body) {
-  std::vector<std::pair<Eigen::Index, double>> walk = {{0, body}};
-  for (const std::size_t k : active()) walk.emplace_back(row_[k], keyframes[k]);
-  for (const auto& [row, variance] : walk)
-    for (const auto& [column, other] : walk)
-      P_.block<3, 3>(row, column).diagonal().array() += std::min(variance, other);
+void MapFilter::inflate(std::span<const double> keyframes, double body, double heading_share) {
+  struct Step {
+    Eigen::Index row;
+    double variance;
+    Eigen::Vector3d up;  // in the pose's own frame
+  };
+  std::vector<Step> walk = {{0, body, T_M_B_.R().row(2)}};
+  for (const std::size_t k : active()) walk.push_back({row_[k], keyframes[k], T_M_K_[k].R().row(2)});
+  for (const Step& one : walk) {
+    for (const Step& other : walk) {
+      const double common = std::min(one.variance, other.variance);
+      P_.block<3, 3>(one.row, other.row).diagonal().array() += common;
+      P_.block<3, 3>(one.row + 3, other.row + 3) += heading_share * common * one.up * other.up.transpose();
+    }
+  }
 }
 
 double MapFilter::squared_distance(std::size_t keyframe, const SE3& T_K_B, const Matrix6d& covariance) const {

@@ -51,9 +51,10 @@ class MapFilter {
   std::optional<SE3> update(std::span<const MapObservation> observations, std::size_t expected,
                             const std::vector<SE3>& T_B_C);
 
-  /// More drift of the position than the options have: a random walk in M, with these variances at the keyframes, by
-  /// index, and at the body, each the sum of those before it [m^2].
-  void inflate(std::span<const double> keyframes, double body);
+  /// More drift than the odometry knows of: a random walk in M of the position, with these variances at the keyframes,
+  /// by index, and at the body, each the sum of those before it [m^2], and of the heading, with that share of them
+  /// [rad^2/m^2].
+  void inflate(std::span<const double> keyframes, double body, double heading_share = 0.0);
 
   /// Squared Mahalanobis distance of the body's pose T_K_B relative to an active keyframe from the predicted one;
   /// covariance: of the error of T_K_B.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "edged/core/directions.hpp"
+#include "edged/core/statistics.hpp"
 #include "edged/map/tuning.hpp"
 
 namespace edged {
@@ -141,7 +142,7 @@ std::optional<Loop> LoopCloser::find(const MapSnapshot& now, std::span<const Pos
   return found->loop;
 }
 
-/// The filter does not know scale that drifts: without this it explains the difference by a rotation.
+/// The filter knows neither scale that drifts nor the gyro's: without this it explains the difference by what is left.
 std::optional<SE3> LoopCloser::close(MapFilter& filter, const KeyframeMap& map, double path_m, const Loop& loop) {
   const auto keyframe = static_cast<std::uint32_t>(loop.keyframe);
   const MapKeyframe& old = map.keyframes()[keyframe];
@@ -152,7 +153,7 @@ std::optional<SE3> LoopCloser::close(MapFilter& filter, const KeyframeMap& map, 
     drifts_m2.push_back(each.t > old.t ? drift_m2 * std::clamp((each.path_m - old.path_m) / path, 0.0, 1.0) : 0.0);
   MapFilter inflated = filter;
   inflated.activate(std::span(&keyframe, 1));
-  inflated.inflate(drifts_m2, drift_m2);
+  inflated.inflate(drifts_m2, drift_m2, square(kMapTuning.max_turn_rad / kMapTuning.gate_sigmas) / drift_m2);
   const Matrix6d measured = loop_covariance(kMapTuning.confirmed_m, kMapTuning.confirmed_rad);
   if (inflated.squared_distance(keyframe, loop.T_K_B, measured) > kLoopChiSquare) return std::nullopt;
   filter = std::move(inflated);

@@ -67,7 +67,7 @@ CameraObservations CameraTracker::observations() const {
   return observations;
 }
 
-void CameraTracker::reject(const SE3& T_O_B, bool trust_gyro) {
+void CameraTracker::reject(const SE3& T_O_B, bool trust_gyro) const {
   const auto rotation = trust_gyro ? std::optional(since_keyframe(T_O_B)) : std::nullopt;
   features->reject_outliers(FeatureTracker::Reference::Keyframe, rotation);
 }

@@ -38,7 +38,7 @@ class CameraTracker {
   void track(const cv::Mat& image, Timestamp t, const SE3& T_O_B, TrackPrediction prediction,
              const std::optional<LampCycle>& lamp);
   /// Drops tracks that contradict one rigid motion since the keyframe; trust_gyro: with the rotation of the gyro.
-  void reject(const SE3& T_O_B, bool trust_gyro);
+  void reject(const SE3& T_O_B, bool trust_gyro) const;
   /// Makes the newest image the keyframe.
   void mark_keyframe(const SE3& T_O_B);
 
