@@ -22,8 +22,13 @@ class Errors {
     const bool thin = typical_step(truth) <= typical_step(estimate);
     const std::size_t stride = thin ? estimate.size() / kMostPoses + 1 : 1;
     for (std::size_t i = 0; i < estimate.size(); i += stride) estimate_.push_back(estimate[i]);
-    fewest_ = static_cast<std::size_t>(kFewest * static_cast<double>(pairs_at(0.0).size()));
+    const auto pairs = static_cast<double>(pairs_at(0.0).size());
+    fewest_ = static_cast<std::size_t>(kFewest * pairs);
+    if (pairs > 0) compared_s_ = pairs * to_seconds(std::max(typical_step(truth), typical_step(estimate_)));
   }
+
+  /// Time in which both have poses.
+  double compared_s() const { return compared_s_; }
 
   double operator()(double offset_s) const {
     const std::vector<PosePair> pairs = pairs_at(offset_s);
@@ -44,13 +49,23 @@ class Errors {
   Duration max_gap_;
   Trajectory estimate_;
   std::size_t fewest_ = 0;
+  double compared_s_ = 0.0;
 };
+
+/// The chance that errors without an offset fit one so well. Those of an odometry are correlated over about a second
+/// (residuals of a short recording show less, as they are fitted), so a second has three that are independent; seven
+/// of all go into alignment and offset. Fisher's F test with n degrees of freedom, of two parameters as the offset is
+/// searched for: (1 + 2 F / n)^(-n / 2).
+double chance_of(const TimeOffset& offset) {
+  constexpr double kCorrelated_s = 1.0, kFitted = 7.0;
+  return std::pow(offset.ate_rmse_m / offset.ate_given_m, 3.0 * offset.compared_s / kCorrelated_s - kFitted);
+}
 
 TimeOffset fit(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {
   const Errors error(truth, estimate, max_gap);
   const double given = error(0.0);
   if (!std::isfinite(given)) return {};
-  TimeOffset best{0.0, given, given};
+  TimeOffset best{0.0, given, given, error.compared_s()};
   const auto consider = [&](double offset_s) {
     const double ate_m = error(offset_s);
     if (ate_m < best.ate_rmse_m) best.offset_s = offset_s, best.ate_rmse_m = ate_m;
@@ -66,9 +81,9 @@ TimeOffset fit(const Trajectory& truth, const Trajectory& estimate, Duration max
 }  // namespace
 
 bool TimeOffset::matters() const {
-  constexpr double kLeast_s = 0.005, kClearlyLess = 0.7, kAlike = 0.5;
+  constexpr double kLeast_s = 0.005, kClearlyLess = 0.7, kAlike = 0.5, kByChance = 1e-3;
   return std::abs(offset_s) > kLeast_s && ate_rmse_m < kClearlyLess * ate_given_m &&
-         spread_s < kAlike * std::abs(offset_s);
+         spread_s < kAlike * std::abs(offset_s) && chance_of(*this) < kByChance;
 }
 
 TimeOffset fit_time_offset(const Trajectory& truth, const Trajectory& estimate, Duration max_gap) {

@@ -40,6 +40,25 @@ TEST(TimeOffset, IsFoundWhereAThirdHasNoGroundTruth) {
   EXPECT_TRUE(fit_time_offset(truth, estimate).matters());
 }
 
+/// An estimate that is behind the truth by 8 ms and has errors of 2 mm beside that.
+Trajectory late_and_wrong(const Trajectory& truth) {
+  Trajectory estimate = truth;
+  for (StampedPose& pose : estimate) {
+    const double t = to_seconds(pose.t - truth.front().t);
+    pose.T.translation() -= 0.008 * winding_velocity(pose.t) + Eigen::Vector3d(0, 0, 0.002 * std::sin(12.0 * t));
+  }
+  return estimate;
+}
+
+TEST(TimeOffset, OfFewSecondsMayBeChance) {
+  const Trajectory seconds = winding_motion(4.0, 50.0), longer = winding_motion(12.0, 50.0);
+  const TimeOffset of_seconds = fit_time_offset(seconds, late_and_wrong(seconds));
+  EXPECT_NEAR(std::abs(of_seconds.offset_s), 0.008, 0.003);
+  EXPECT_LT(of_seconds.ate_rmse_m, 0.7 * of_seconds.ate_given_m);
+  EXPECT_FALSE(of_seconds.matters());
+  EXPECT_TRUE(fit_time_offset(longer, late_and_wrong(longer)).matters());
+}
+
 TEST(TimeOffset, OfATruthOnTheSameClockDoesNotMatter) {
   const Trajectory motion = winding_motion(20.0, 50.0);
   EXPECT_NEAR(fit_time_offset(motion, motion).offset_s, 0.0, 1e-3);
