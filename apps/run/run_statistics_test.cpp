@@ -54,6 +54,8 @@ TEST(RunStatistics, TellTheLargerShareOfWhatWasDropped) {
   statistics.add_visual(Frame{at(1.0), "frames", {}}, {});
   statistics.set_dropped({930, 0});
   EXPECT_EQ(statistics.overload().text, "93 % of the events dropped");
+  statistics.set_dropped({930, 0, 900});
+  EXPECT_EQ(statistics.overload().text, "93 % of the events dropped, as reading is too slow");
   statistics.set_dropped({930, 99});
   EXPECT_EQ(statistics.overload().text, "99 % of the frames dropped");
   EXPECT_EQ(statistics.overload().share, 0.99);

@@ -167,19 +167,22 @@ void add_depth_scale(Figures& out, const std::optional<LogScale>& ln_s) {
 
 Json live_json(const LiveSummary& live) {
   const QueuePeaks& peaks = live.peaks;
-  return {
-      {"latency_s",
-       {{"p50", live.latency.quantile_s(0.50)},
-        {"p95", live.latency.quantile_s(0.95)},
-        {"p99", live.latency.quantile_s(0.99)},
-        {"max", live.latency.max_s()}}},
-      {"shed", {{"events", live.dropped.events}, {"frames", live.dropped.frames}, {"packets", live.dropped_packets}}},
-      {"queue_peak",
-       {{"events", peaks.events},
-        {"frames", peaks.frames},
-        {"imu_samples", peaks.imu},
-        {"bytes", peaks.bytes},
-        {"age_s", peaks.age_s}}}};
+  return {{"latency_s",
+           {{"p50", live.latency.quantile_s(0.50)},
+            {"p95", live.latency.quantile_s(0.95)},
+            {"p99", live.latency.quantile_s(0.99)},
+            {"max", live.latency.max_s()}}},
+          {"shed",
+           {{"events", live.dropped.events},
+            {"unread", live.dropped.unread},
+            {"frames", live.dropped.frames},
+            {"packets", live.dropped_packets}}},
+          {"queue_peak",
+           {{"events", peaks.events},
+            {"frames", peaks.frames},
+            {"imu_samples", peaks.imu},
+            {"bytes", peaks.bytes},
+            {"age_s", peaks.age_s}}}};
 }
 
 void add_live(Figures& out, const LiveSummary& live) {

@@ -80,6 +80,11 @@ class Dataset {
   /// changes, except that repairs() counts only what is read.
   virtual void leave_out(Modality /*unwanted*/) {}
 
+  /// Asks for less where reading is too slow for its consumer: from now on next() may leave out that share of the
+  /// events, 0 to 1, by blocks evenly spread over time, as early as the format allows. Returns how many it has left out
+  /// so far.
+  virtual std::size_t skip_events(double /*share*/) { return 0; }
+
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
 
   /// Repairs made so far, by kind ("events out of order", "frame missing", ...) with their counts.

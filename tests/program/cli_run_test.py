@@ -136,7 +136,7 @@ class Run(WithFlight):
         self.assertGreaterEqual(live["wall_s"], 4.9)
         latency = live["live"]["latency_s"]
         self.assertEqual(sorted(latency.values()), [latency[key] for key in ("p50", "p95", "p99", "max")])
-        self.assertEqual(live["live"]["shed"], {"events": 0, "frames": 0, "packets": 0})
+        self.assertEqual(live["live"]["shed"], {"events": 0, "unread": 0, "frames": 0, "packets": 0})
         self.assertGreater(live["live"]["queue_peak"]["events"], 0)
         edged("run", self.flight, "--out", self.folder / "run", "--quiet", "--set", "depth.source=fused")
         offline = json.loads((self.folder / "run" / "metrics.json").read_text())

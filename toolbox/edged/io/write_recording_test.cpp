@@ -66,6 +66,34 @@ TEST_P(WritableFormats, LeaveOutWhatIsNotWantedAndGiveTheRestAsEver) {
   }
 }
 
+TEST_P(WritableFormats, SkipEventsByBlocksOnRequest) {
+  if (GetParam().name == "ecd" || GetParam().name == "csv") GTEST_SKIP() << "text has no blocks";
+  ListedDataset source;
+  constexpr int kBatches = 6000, kEvents = 100;
+  for (int i = 0; i < kBatches; ++i) {
+    const Timestamp t = timestamp_from_ns(1'000'000'000 + 1'000'000LL * i);
+    if (i % 10 == 0) source.measurements.push_back(ImuSample{t, {0, 0, 0}, {0, 0, 9.81}});
+    EventBatch batch{"events", {}};
+    for (int j = 0; j < kEvents; ++j)
+      batch.events.push_back({t + std::chrono::microseconds(9 * j), static_cast<std::uint16_t>(j), 5, true});
+    source.measurements.push_back(std::move(batch));
+  }
+  const WriteCounts written = write(source);
+  for (const double share : {0.25, 0.75}) {
+    const Recording recording = open_recording(target());
+    recording.dataset->skip_events(share);
+    const Contents read = read_all(*recording.dataset);
+    EXPECT_NEAR(static_cast<double>(read.events.size()) / (kBatches * kEvents), 1.0 - share, 0.15);
+    EXPECT_EQ(read.events.size() + recording.dataset->skip_events(0.0), kBatches * kEvents);
+    EXPECT_EQ(read.imu.size(), written.imu);
+    Timestamp before = read.events.front().t;
+    for (const Event& event : read.events) {
+      EXPECT_LT(event.t - before, std::chrono::milliseconds(2100));  // three blocks of HDF5, the longest
+      before = event.t;
+    }
+  }
+}
+
 /// Formats that hold events only are not sufficient for a run.
 TEST_P(WritableFormats, KeepWhosePosesTrajectoriesHold) {
   for (const char* frame : {"events", "frames", "body"}) {

@@ -42,22 +42,22 @@ std::size_t EventThinner::thin(std::vector<Event>& events, double share) {
   return dropped;
 }
 
-double OverloadShare::next(double delay, double passed_s) {
-  constexpr double kLeast = 0.08;
+double OverloadShare::next(double delay, double passed_s, double least) {
   constexpr double kRemembered_s = 0.1;  // in which a delay of 2 lowers the lasting share by its e-fold
   constexpr double kWorst = 3.0;         // a longer delay does not change it faster
   lasting_ *= std::exp(passed_s / kRemembered_s * (1.0 - std::min(delay, kWorst)));
-  lasting_ = std::clamp(lasting_, kLeast, 1.0);
-  return std::max(kLeast, lasting_ / std::max(delay, 1.0));
+  lasting_ = std::clamp(lasting_, least, 1.0);
+  return std::max(least, lasting_ / std::max(delay, 1.0));
 }
 
-OverloadThinner::OverloadThinner(double max_age_s) : free_age_s_(0.08 * max_age_s) {}  // longer than most packets take
+OverloadThinner::OverloadThinner(double max_age_s) : free_delay_s_(free_delay_s(max_age_s)) {}
 
-void OverloadThinner::thin(EventBatch& batch, double delay_s) {
+void OverloadThinner::thin(EventBatch& batch, double delay_s, double read) {
   if (batch.events.empty()) return;
   const double passed_s = to_seconds(batch.events.back().t - batch.events.front().t);
+  const double least = std::min(1.0, OverloadShare::kLeastKept / read);
   const std::lock_guard lock(mutex_);
-  dropped_ += thinners_[batch.camera].thin(batch.events, share_.next(delay_s / free_age_s_, passed_s));
+  dropped_ += thinners_[batch.camera].thin(batch.events, share_.next(delay_s / free_delay_s_, passed_s, least));
 }
 
 std::size_t OverloadThinner::dropped() const {

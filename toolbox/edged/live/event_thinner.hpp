@@ -32,28 +32,35 @@ class EventThinner {
 /// again.
 class OverloadShare {
  public:
-  /// delay: 1 is the longest that is free. passed_s: since the last call. At most 1; a small share is always kept.
-  double next(double delay, double passed_s);
+  /// delay: 1 is the longest that is free. passed_s: since the last call. least: the share that is always kept. At
+  /// most 1.
+  double next(double delay, double passed_s, double least = kLeastKept);
+
+  static constexpr double kLeastKept = 0.08;
 
  private:
   double lasting_ = 1.0;
 };
 
+/// The longest delay [s] without thinning: longer than most packets take. max_age_s: that of QueueConfig.
+inline double free_delay_s(double max_age_s) { return 0.08 * max_age_s; }
+
 /// While a measurement waits longer than a small part of the allowed age, a share of the new events is kept that falls
 /// until the wait is that part again: the events become fewer in the whole image, and there is no gap in time. A small
-/// share is always kept: where reading itself is too slow, it would not help to drop all. From any thread.
+/// share is always kept. From any thread.
 class OverloadThinner {
  public:
   /// max_age_s: that of QueueConfig.
   explicit OverloadThinner(double max_age_s);
 
-  /// Drops events of a new batch. delay_s: how long the oldest measurement has waited.
-  void thin(EventBatch& batch, double delay_s);
+  /// Drops events of a new batch. delay_s: how much older the oldest measurement is that waits.
+  /// read: the share of all events that is read; what is skipped counts among those not kept.
+  void thin(EventBatch& batch, double delay_s, double read = 1.0);
   /// Number of events dropped so far.
   std::size_t dropped() const;
 
  private:
-  const double free_age_s_;  ///< the longest wait without thinning
+  const double free_delay_s_;
   mutable std::mutex mutex_;
   OverloadShare share_;
   std::map<std::string, EventThinner> thinners_;  ///< by camera

@@ -8,6 +8,7 @@
 #include <array>
 #include <map>
 #include <random>
+#include <utility>
 
 namespace edged {
 namespace {
@@ -115,6 +116,35 @@ TEST(OverloadShare, AllEventsAreKeptSoonAfterOverload) {
   EXPECT_EQ(consumer.share, 1.0);
 }
 
+/// A reader that takes `load` times as long for blocks of events as they span; its delay, 20 ms being free.
+struct Reader {
+  void run(double load, double duration_s) {
+    constexpr double kBlock_s = 1e-3, kFree_s = 0.02;
+    double now_s = 0.0, due = 0.0, passed_s = 0.0;
+    for (double t_s = 0.0; t_s < duration_s; t_s += kBlock_s) {
+      passed_s += kBlock_s;
+      if ((due += share) < 1.0) continue;
+      due -= 1.0;
+      now_s = std::max(now_s, t_s) + load * kBlock_s;
+      longest_s = std::max(longest_s, now_s - t_s);
+      share = overload.next((now_s - t_s) / kFree_s, std::exchange(passed_s, 0.0), 0.01);
+      read_s += kBlock_s;
+    }
+  }
+
+  OverloadShare overload;
+  double share = 1.0, longest_s = 0.0, read_s = 0.0;
+};
+
+TEST(OverloadShare, ASlowReaderSkipsSoMuchThatItIsNeverFarBehind) {
+  for (const double load : {1.5, 3.0, 10.0}) {
+    Reader reader;
+    reader.run(load, 4.0);
+    EXPECT_LT(reader.longest_s, 0.1) << load;
+    EXPECT_NEAR(reader.read_s, 4.0 / load, 0.1 * 4.0 / load) << load << ": no more than has to be";
+  }
+}
+
 TEST(OverloadThinner, ThinsTheEventsOfEachCameraAndCountsThem) {
   OverloadThinner thinner(0.25);
   const auto batch_of = [](const char* camera) {
@@ -131,6 +161,9 @@ TEST(OverloadThinner, ThinsTheEventsOfEachCameraAndCountsThem) {
   EXPECT_NEAR(static_cast<double>(left.events.size()), 1000.0 / 3.0, 40.0);
   EXPECT_NEAR(static_cast<double>(right.events.size()), 1000.0 / 3.0, 40.0);
   EXPECT_EQ(thinner.dropped(), 2000U - left.events.size() - right.events.size());
+  EventBatch rest = batch_of("left");
+  thinner.thin(rest, 1.0, 0.08);
+  EXPECT_EQ(rest.events.size(), 1000U) << "the least that is kept has been read";
 }
 
 }  // namespace

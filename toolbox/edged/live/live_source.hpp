@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 Edged USLAM developers
 // SPDX-License-Identifier: Apache-2.0
-// A recording played in real time, or sensors, read by a thread of its own: for a slow consumer events are thinned.
+// A recording played in real time, or sensors, read by a thread of its own: for a slow consumer events are thinned,
+// for slow reading blocks of them skipped.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 
@@ -38,19 +40,25 @@ class LiveSource {
 
   /// From the due time of a measurement to its result.
   const StageTiming& latency() const { return latency_; }
-  /// By the queue, and by thinning before it.
+  /// By the queue, by thinning before it, and by the reader.
   DropCounters dropped() const;
   const StageTiming& reading() const { return reader_.reading(); }
   QueuePeaks peaks() const { return reader_.queue().peaks(); }
 
  private:
   LiveClock::Clock::time_point pace(Measurement& measurement, const std::function<bool()>& stopped);
+  void lighten(EventBatch& batch, LiveClock::Clock::time_point due);
 
+  Dataset& dataset_;
+  const double free_delay_s_;
   std::function<void(const Measurement&)> on_due_;
   LiveClock clock_;
   StageTiming latency_;
   DropReport report_;
   OverloadThinner thinner_;
+  OverloadShare read_share_;
+  std::optional<Timestamp> newest_events_;
+  std::atomic<std::size_t> unread_ = 0;
   ReadAhead reader_;  // last member: its thread uses the others
 };
 

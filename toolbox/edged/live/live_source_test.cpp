@@ -89,6 +89,20 @@ TEST(LiveSource, WhoHaltsMissesSomeOfTheLaterEventsAndFindsNoGap) {
   EXPECT_EQ(source.dropped().frames, 0U);
 }
 
+TEST(LiveSource, WhatIsReadTooSlowlyIsSkippedEvenlyButForFramesAndImuSamples) {
+  const EventStorm storm = breeze(1000);
+  SlowStorm slow(storm, 4);
+  LiveSource source(slow, {}, kNotInterrupted);
+  const Counts counts = count_all(source);
+  source.stop();
+  const DropCounters dropped = source.dropped();
+  EXPECT_GT(dropped.unread, storm.events() / 2);
+  // The last ones may be skipped after the last that is read.
+  EXPECT_EQ(counts.events + dropped.events - dropped.unread + slow.skip_events(0.0), storm.events());
+  EXPECT_EQ(counts.frames, storm.frames());
+  EXPECT_EQ(counts.imu, storm.imu_samples());
+}
+
 TEST(LiveSource, AnErrorOfTheRecordingComesAfterAllThatCameBeforeIt) {
   BrokenStorm broken(breeze(20), "imu.txt:7: rubbish");
   LiveSource source(broken, kRoomy, kNotInterrupted);

@@ -34,6 +34,7 @@ enum class WhenFull {
 /// Measurements dropped because the odometry was too slow for them.
 struct DropCounters {
   std::size_t events = 0, frames = 0;
+  std::size_t unread = 0;  ///< of the events: by the reader, which was itself too slow
   bool operator==(const DropCounters&) const = default;
 };
 

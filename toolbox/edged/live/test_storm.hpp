@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "edged/core/check.hpp"
@@ -68,6 +69,35 @@ class EventStorm : public Dataset {
   int duration_ms_;
   int ms_ = 0, turn_ = 0;
   std::uint64_t random_ = 1;
+};
+
+/// A storm that takes that many milliseconds to read a batch of events.
+class SlowStorm : public Dataset {
+ public:
+  SlowStorm(EventStorm storm, int batch_ms) : storm_(std::move(storm)), batch_time_(batch_ms) {}
+  const DatasetInfo& info() const override { return storm_.info(); }
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> measurement = storm_.next();
+    const auto* batch = measurement ? std::get_if<EventBatch>(&*measurement) : nullptr;
+    if (!batch) return measurement;
+    if ((sum_ += skip_share_) >= 1.0) {
+      sum_ -= 1.0;
+      skipped_ += batch->events.size();
+      return next();
+    }
+    std::this_thread::sleep_for(batch_time_);
+    return measurement;
+  }
+  std::size_t skip_events(double share) override {
+    skip_share_ = share;
+    return skipped_;
+  }
+
+ private:
+  EventStorm storm_;
+  std::chrono::milliseconds batch_time_;
+  double skip_share_ = 0.0, sum_ = 0.0;
+  std::size_t skipped_ = 0;
 };
 
 /// A storm whose recording ends in an error.

@@ -26,6 +26,7 @@ class RecordingPiece final : public Dataset {
   const DatasetInfo& info() const override { return info_; }
   std::optional<Measurement> next() override;
   void leave_out(Modality unwanted) override;
+  std::size_t skip_events(double share) override { return whole_->skip_events(share); }
   std::optional<GroundTruth> ground_truth() const override;
   std::map<std::string, std::size_t> repairs() const override { return whole_->repairs(); }
 

@@ -50,6 +50,7 @@ class WrappedDataset : public Dataset {
   const DatasetInfo& info() const override { return recording_->info(); }
   std::optional<Measurement> next() override { return recording_->next(); }
   void leave_out(Modality unwanted) override { recording_->leave_out(unwanted); }
+  std::size_t skip_events(double share) override { return recording_->skip_events(share); }
   std::optional<GroundTruth> ground_truth() const override { return recording_->ground_truth(); }
   std::map<std::string, std::size_t> repairs() const override { return recording_->repairs(); }
 

@@ -81,7 +81,21 @@ std::optional<Measurement> StreamedDataset::merged() {
   }
 }
 
+bool StreamedDataset::skips_block(std::size_t events) {
+  skip_sum_ += skip_share_;
+  if (events == 0 || skip_sum_ < 1.0) return false;
+  skip_sum_ -= 1.0;
+  skipped_ += events;
+  return true;
+}
+
+/// The last event tells the merger how far the stream is.
 void StreamedDataset::push_events(std::span<const Event> events, std::size_t camera) {
+  if (events.size() > 1 && skips_block(events.size() - 1)) events = events.last(1);
+  push_wanted_events(events, camera);
+}
+
+void StreamedDataset::push_wanted_events(std::span<const Event> events, std::size_t camera) {
   if (!wants(Modality::Events)) return;
   const cv::Size size = sensor_of(camera);
   const auto outside = [size](const Event& e) { return e.x >= size.width || e.y >= size.height; };

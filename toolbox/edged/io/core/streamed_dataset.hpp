@@ -21,6 +21,10 @@ class StreamedDataset : public Dataset {
   const DatasetInfo& info() const final { return info_; }
   std::optional<Measurement> next() final;
   void leave_out(Modality unwanted) final;
+  std::size_t skip_events(double share) final {
+    skip_share_ = share;
+    return skipped_;
+  }
   std::map<std::string, std::size_t> repairs() const final { return repairs_.counts(); }
 
  protected:
@@ -47,8 +51,13 @@ class StreamedDataset : public Dataset {
   void set_sensor(cv::Size size, std::size_t camera = 0) { sensor_of(camera) = size; }
   cv::Size sensor(std::size_t camera) { return sensor_of(camera); }
 
-  /// Events outside the sensor are left out; a recording with more than 1 % of them is refused (InputError).
+  /// A block of events, of which only the last is kept if it is to be skipped.
   void push_events(std::span<const Event> events, std::size_t camera = 0);
+  /// Events that are not to be skipped. Those outside the sensor are left out; a recording with more than 1 % of them
+  /// is refused (InputError).
+  void push_wanted_events(std::span<const Event> events, std::size_t camera = 0);
+  /// Whether the next block is to be skipped; then counts its events. For readers that can leave out decoding it.
+  bool skips_block(std::size_t events);
   /// image: CV_8UC1. Throws Damage if its size differs from that of the camera's first image.
   void push_frame(Timestamp t, cv::Mat image, std::size_t camera = 0);
   void push_imu(const ImuSample& sample) { merger_.push(sample); }
@@ -72,6 +81,8 @@ class StreamedDataset : public Dataset {
   std::size_t inside_ = 0, outside_ = 0;
   bool finished_ = false;
   std::set<Modality> left_out_;
+  double skip_share_ = 0.0, skip_sum_ = 0.0;  ///< of the blocks; those due, less those skipped
+  std::size_t skipped_ = 0;
   std::optional<Measurement> first_;  ///< read by begin()
 };
 

@@ -55,7 +55,7 @@ class Hdf5Dataset final : public StreamedDataset {
         repairs_.add("events: arrays of different lengths",
                      name_ + ": x, y, t and p differ in length; the shortest counts");
       add_rows<Event>(std::move(cameras.events[i]), {kEventsAtOnce, 1024, "events", Modality::Events},
-                      [this, i](std::span<const Event> part) { push_events(part, i); });
+                      [this, i](std::span<const Event> part) { push_wanted_events(part, i); });
     }
     for (std::size_t i = 0; i < cameras.frames.size(); ++i) {
       if (auto* images = std::get_if<H5Images>(&cameras.frames[i])) {
@@ -148,6 +148,10 @@ class Hdf5Dataset final : public StreamedDataset {
                          at = std::uint64_t{0}](std::vector<T>& items) mutable {
       if (at == rows->rows() || !wants(how.modality)) return false;
       const std::uint64_t count = std::min(how.at_once, rows->rows() - at);
+      if (how.modality && skips_block(count)) {
+        at += count;
+        return true;
+      }
       read_parts(at, count, how.smallest, how.subject, [&](std::uint64_t first, std::uint64_t n) {
         std::vector<T> read = rows->read(first, n);
         std::erase_if(read, [&](const T& item) { return !is_stamp(item.t, how.subject) || !is_finite(item); });
