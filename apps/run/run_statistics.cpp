@@ -83,9 +83,10 @@ RunStatistics::Overload RunStatistics::overload() const {
   };
   const double events = share(dropped_.events, used_.events), frames = share(dropped_.frames, used_.frames);
   const double most = std::max(events, frames);
-  if (frames > events) return {most, fmt::format("{:.0f} % of the frames dropped", 100.0 * most)};
-  const char* cause = dropped_.unread > dropped_.events / 2 ? ", as reading is too slow" : "";
-  return {most, fmt::format("{:.0f} % of the events dropped{}", 100.0 * most, cause)};
+  const bool by_reading = events >= frames && dropped_.unread > dropped_.events / 2;
+  return {most, by_reading,
+          fmt::format("{:.0f} % of the {} dropped{}", 100.0 * most, frames > events ? "frames" : "events",
+                      by_reading ? ", as reading is too slow" : "")};
 }
 
 double RunStatistics::coverage() const {

@@ -53,8 +53,9 @@ class RunStatistics {
   /// What a live run has dropped so far, as it was too slow.
   void set_dropped(const DropCounters& dropped) { dropped_ = dropped; }
   struct Overload {
-    double share = 0.0;  ///< of the events or of the frames, the larger one
-    std::string text;    ///< "93 % of the events dropped"
+    double share = 0.0;       ///< of the events or of the frames, the larger one
+    bool by_reading = false;  ///< most of them are events that were not read in time
+    std::string text;         ///< "93 % of the events dropped"
   };
   Overload overload() const;
   /// Relative standard deviation of the way travelled, see ScaleUncertainty; nothing if it is short.

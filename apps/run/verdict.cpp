@@ -126,7 +126,7 @@ void judge_live(const LiveSummary& live, const RunStatistics& run, std::vector<F
       {overload.share > kMost || too_late ? Severity::Error : Severity::Warning,
        fmt::format("live: too slow for this recording: {}, latency {:.2f} s (median; live.max_age_s {:g})",
                    overload.text, late_s, live.max_age_s),
-       live.dropped.unread > live.dropped.events / 2
+       overload.by_reading
            ? "record fewer events a second, or use a faster computer"
            : "raise packets.min_interval_s, lower tracker.detector.max_features, choose another --mode, or use a "
              "faster computer"});

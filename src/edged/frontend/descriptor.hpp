@@ -16,6 +16,9 @@ namespace edged {
 /// 256 comparisons of grey levels around a feature (ORB, by OpenCV).
 using Descriptor = std::array<std::uint64_t, 4>;
 
+/// Descriptors of one point differ by fewer bits.
+inline constexpr int kMaxDescriptorBits = 64;
+
 /// Number of bits that differ.
 int distance(const Descriptor& a, const Descriptor& b);
 

@@ -28,7 +28,6 @@ struct FrontendTuning {
   double predicted_search_px = 8.0;   ///< radius around the predicted position
   double search_px = 20.0;            ///< radius around the last position, without a prediction
   double candidate_cell_px = 6.0;     ///< side of a cell with one candidate
-  double max_descriptor_bits = 64.0;  ///< of 256 that differ
   double max_descriptor_ratio = 0.8;  ///< of the best match over the second best (Lowe, 2004)
 
   // Outliers (OpenGV).

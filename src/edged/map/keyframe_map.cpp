@@ -185,7 +185,7 @@ std::vector<KeyframeMap::ViewIndex> KeyframeMap::candidate_views(
 /// of an image stay in the cache and those of the map do not.
 std::vector<KeyframeMap::DescriptorMatch> KeyframeMap::match_descriptors(
     const MapQuery& query, std::span<const std::optional<Descriptor>> descriptors) const {
-  std::vector<DescriptorMatch> alike(descriptors.size(), DescriptorMatch{kMapTuning.max_descriptor_bits, {}, nullptr});
+  std::vector<DescriptorMatch> alike(descriptors.size(), DescriptorMatch{kMaxDescriptorBits, {}, nullptr});
   for (const ViewIndex& each : candidate_views(query, descriptors)) {
     for (const MapPoint& point : keyframes_[each.keyframe].views[each.view].points) {
       if (!point.descriptor) continue;

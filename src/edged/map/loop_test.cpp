@@ -70,7 +70,7 @@ TEST(MapFilter, FindsALoopUnlikelyThatDriftDoesNotExplain) {
 }
 
 TEST(MapFilter, ClosesALoopByPositionWhereDriftIsLoosened) {
-  // The drift of the options, of which most is of yaw, does not explain 4 m.
+  // The drift of the ring, of which most is of yaw, does not explain 4 m.
   const SE3 T_K_B(SE3(so3::exp({0.0, 0.0, 0.02}), {-4.0, 0.0, 0.0}));
   std::vector<double> walk;
   for (int k = 0; k < Ring::kSteps; ++k) walk.push_back(4.0 * k / Ring::kSteps);

@@ -39,7 +39,6 @@ struct MapTuning {
   double new_view_px = 3.0;
 
   // Places by appearance (decision 029).
-  int max_descriptor_bits = 64;          ///< by which descriptors of one point differ, of 256
   std::size_t compared_keyframes = 100;  ///< point by point; of a larger map those with most votes of the index
   double agreement_px = 3.0;             ///< between a feature and its point at the recognized pose
   std::size_t min_inliers = 8;           ///< that must agree with one pose

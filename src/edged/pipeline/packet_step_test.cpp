@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "edged/estimator/test_world.hpp"
-#include "edged/pipeline/vision/recorded_vision.hpp"
+#include "edged/pipeline/vision/test_recorded_vision.hpp"
 
 namespace edged {
 namespace {

@@ -36,7 +36,7 @@ std::optional<Eigen::Vector2d> best_match(const Descriptor& descriptor, const Ei
     second = std::min(second, std::max(best, bits));
     if (bits < best) best = bits, found = candidates.pixels[i];
   }
-  const bool clear = best < kFrontendTuning.max_descriptor_bits && best < kFrontendTuning.max_descriptor_ratio * second;
+  const bool clear = best < kMaxDescriptorBits && best < kFrontendTuning.max_descriptor_ratio * second;
   return clear ? std::optional(found) : std::nullopt;
 }
 

@@ -76,7 +76,7 @@ class Localization {
     Uncertainty uncertainty = {};                                ///< as of the last covariance
     std::optional<StateCovariance> covariance = {};
     Timestamp covariance_at = {};
-    std::optional<OdomUncertainty> known = {};  ///< the same of the newest state
+    std::optional<OdomUncertainty> known = {};  ///< of the last covariance, too
     Eigen::Vector3d started_at_O = Eigen::Vector3d::Zero();
   };
   Session new_session(const std::optional<BiasPrior>& prior, const ExternalCounters& earlier, Timestamp until) const;
